@@ -14,8 +14,8 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// A run that cannot go on (not-a-number, exploding grain, energy from nothing, failed root search). The message names
-/// the step, the grain and the last good checkpoint. Applications print it and return exit code 1.
+/// A run that cannot continue (not-a-number, exploding grain, energy from nothing, failed root search). The message
+/// names the step, the grain and the last good checkpoint. Applications print it and return exit code 1.
 class RunFailure : public std::runtime_error
 {
 public:

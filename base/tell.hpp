@@ -8,8 +8,8 @@
 
 namespace isostat
 {
-/// Words for who watches, on stderr. A run does not end because nobody can read them: the disk of a log may be full, a
-/// pipe or a terminal closed.
+/// Messages for the observer, on stderr. A run does not end because they cannot be written: the disk of a log may be
+/// full, a pipe or a terminal closed.
 inline void tell(const std::string &text) { std::fputs(text.c_str(), stderr); }
 
 /// Takes the warnings of its thread while it lives, for a program that has its own way to warn, as Python does.

@@ -52,8 +52,8 @@ struct Quantity
 /// tested: tests/base/units_test.cpp
 Quantity parse_quantity(std::string_view text, Dimension dimension);
 
-/// The reverse, in the given unit: parse_quantity(format_quantity(v, d, unit), d).value == v to the bit. Angles use the
-/// fewest decimals of degrees that come back, or "0.3 tan" if none does.
+/// The reverse, in the given unit: parse_quantity(format_quantity(v, d, unit), d).value == v, bit for bit. Angles use
+/// the fewest decimals of degrees that come back, or "0.3 tan" if none does.
 /// @pre value finite, angles >= 0, unit a name of the table with a power of ten (or deg, min)
 /// tested: tests/base/units_test.cpp (random bit patterns)
 std::string format_quantity(double value, Dimension dimension, std::string_view unit);

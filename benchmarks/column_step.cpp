@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of one step of a soil column beside its material: what the finite elements cost, per step and 200 elements.
+// Time of one step of a soil column next to its material: what the finite elements cost, per step and 200 elements.
 // Settings take turns, seven rounds; median and range. The error that goes with it is that of the shear layer's
 // transfer function (tests/verification/shear_layer_test.cpp).
 //

@@ -6,7 +6,7 @@
 //   taskset -c 0 contact_loop --benchmark_filter=full/AVX3 --benchmark_repetitions=5
 //
 // The packing is copies of the stored one of 1,000 grains in a row (tests/reference/n1000/medium, dense, 200 kPa), as
-// it stands: only touching pairs are listed, all lanes work. Time stands still (dt = 0), so every pass does the same.
+// it is: only touching pairs are listed, all lanes work. Time stands still (dt = 0), so every pass does the same.
 #include "base/record/instruction_set.hpp"
 #include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/contact/linear_rolling/law.hpp"

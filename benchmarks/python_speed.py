@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same test by element_test and from Python, by turns: steps per second, and whether the histories are equal.
+"""The same test by element_test and from Python, alternately: steps per second, and whether the histories are equal.
 
     taskset -c 0 python3 benchmarks/python_speed.py                 # five rounds of 2,000 grains
     PYTHONPATH=build/release/python taskset -c 0 /usr/bin/python3 benchmarks/python_speed.py --rounds 9
@@ -68,7 +68,7 @@ def main():
                 same = (folder / f"{run}{k}/history.csv").read_bytes() == (folder / "p0/history.csv").read_bytes()
                 if not same:
                     sys.exit(f"{run}{k}: another history than that of the program")
-    print(f"{arguments.grains} grains, {arguments.rounds} rounds by turns, histories equal to the bit")
+    print(f"{arguments.grains} grains, {arguments.rounds} alternating rounds, histories equal bit for bit")
     for way, values in rates.items():
         ratios = [value / program for value, program in zip(values, rates["element_test"])]
         print(f"{way:<16} {statistics.median(values):8.0f} steps/s   of the program {statistics.median(ratios):.3f} "

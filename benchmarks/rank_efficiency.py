@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parallel efficiency of a column of grains: 1 rank, 2 ranks, 2 threads, two runs of 1 rank side by side, in turns.
+"""Parallel efficiency of a column of grains: 1 rank, 2 ranks, 2 threads, two runs of 1 rank side by side, interleaved.
 
     rank_efficiency.py BIN SCENE LIBRARY [--rounds 5] [--set key=value ...]
 

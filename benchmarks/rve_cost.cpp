@@ -2,7 +2,7 @@
 // rve_cost: what a representative volume element costs, side by side with the box of the element tests.
 //
 //   step      constant-volume shear of a periodic cell and of a box, N grains each, same grading, density and pressure,
-//             in turns (cell, box, cell, box, ...): time per step and per contact
+//             interleaved (cell, box, cell, box, ...): time per step and per contact
 //   advance   milliseconds of an increment of 1e-5 of simple shear at the default tolerance, with its time steps
 //   state     bytes per grain; microseconds of save, restore, pack; milliseconds of the condensed stiffness
 //
@@ -33,7 +33,7 @@ double median(std::vector<double> values)
   return values[values.size() / 2];
 }
 
-/// Shear at constant volume, as the element tests do it: stress is looked at in every step.
+/// Shear at constant volume, as the element tests do it: stress is measured in every step.
 class Sheared
 {
 public:
@@ -123,11 +123,11 @@ void measure_element(std::uint64_t grains, int rounds)
 
 int main(int argc, char **argv)
 {
-  CLI::App line("Cost of a representative volume element beside the box of the element tests");
+  CLI::App line("Cost of a representative volume element compared with the box of the element tests");
   std::uint64_t grains = 1000;
   int rounds = 7, steps = 2000;
   line.add_option("--grains", grains, "grains of either packing")->check(CLI::Range(100, 20000));
-  line.add_option("--rounds", rounds, "rounds of cell and box in turns")->check(CLI::Range(1, 1000));
+  line.add_option("--rounds", rounds, "interleaved rounds of cell and box")->check(CLI::Range(1, 1000));
   line.add_option("--steps", steps, "steps of a round")->check(CLI::Range(10, 1000000));
   return run_command(line, argc, argv, [&] {
     compare_steps(grains, rounds, steps);

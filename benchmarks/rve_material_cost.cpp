@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rve_material_cost: what a batch of representative volume elements costs beside the elements themselves.
+// rve_material_cost: what a batch of representative volume elements costs in addition to the elements themselves.
 //
 //   loop      the strain of a whole round in one call of each element: nothing but time steps, per increment
 //   alone     the elements advanced one after the other by Rve::undrained, nothing around them
 //   dynamics  trial, commit: every trial is kept
 //   Newton    three trials from each committed state, then commit
 //
-//   Shear increments of 1e-5 at constant volume, in turns; processor time, medians of the rounds.
+//   Shear increments of 1e-5 at constant volume, interleaved; processor time, medians of the rounds.
 //
 //   rve_material_cost --elements 20 --grains 1000 --rounds 5
 #include "apps/common/command_line.hpp"
@@ -181,7 +181,7 @@ void measure_batch(const Snapshot &start, const Options &options)
   MaterialState state;
   const double pack = seconds_of([&] { state = material.pack(); });
   const double unpack = seconds_of([&] { material.unpack(state); });
-  fmt::print("batch without strain {:.1f} us; stiffness {:.0f} ms, wave moduli {:.0f} ms anew, {:.2f} us known; pack "
+  fmt::print("batch without strain {:.1f} us; stiffness {:.0f} ms, wave moduli {:.0f} ms new, {:.2f} us known; pack "
              "{:.1f} ms, unpack {:.1f} ms, {:.2f} MB\n",
              1e6 * empty, 1e3 * stiffness, 1e3 * waves, 1e6 * known, 1e3 * pack, 1e3 * unpack,
              1e-6 * static_cast<double>(state.bytes().size()));
@@ -215,7 +215,7 @@ void prepare_column(const Snapshot &start, const Options &options)
 
 int main(int argc, char **argv)
 {
-  CLI::App line("Cost of a material of representative volume elements beside the elements alone");
+  CLI::App line("Cost of a material of representative volume elements compared with the elements alone");
   Options options;
   line.add_option("--elements", options.elements, "elements of the batch")->check(CLI::Range(1, 1000));
   line.add_option("--grains", options.grains, "grains of each")->check(CLI::Range(100, 20000));

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Do two builds give the same bits? Runs some twenty short scenes of every program and hashes what they leave.
 
-    same_bits.py BIN_FOLDER --store digests.json            # of the build before a change; goes on where it stopped
+    same_bits.py BIN_FOLDER --store digests.json            # of the build before a change; continues where it stopped
     same_bits.py BIN_FOLDER --against digests.json          # of the build after it; returns 1 if a digest differs
 
 Hashed (SHA-256) are the bytes of history.csv and, of every HDF5 file with numbers (snapshots, profiles, maps, strain
@@ -160,7 +160,7 @@ def digests_of(folder):
 
 
 def run(command, log, stop_after=None):
-    """Exit code of a run; one that is to be stopped gets SIGINT once three files are in the folder `stop_after`."""
+    """Exit code of a run; one to stop gets SIGINT once three files are in the folder `stop_after`."""
     process = subprocess.Popen([str(c) for c in command], cwd=ROOT, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
                                stdout=log, stderr=subprocess.STDOUT)
     if stop_after:
@@ -171,7 +171,7 @@ def run(command, log, stop_after=None):
 
 
 def run_all(binaries, work, chosen, keep):
-    """Digests of the runs whose names are chosen; keep(digests) after each, so that an interrupted list goes on."""
+    """Digests of the runs whose names are chosen; keep(digests) after each, so that an interrupted list continues."""
     (work / "box.toml").write_text(OTHER_STAGES.replace("DOMAIN", "rigid-box"))
     (work / "cell.toml").write_text(OTHER_STAGES.replace("DOMAIN", "periodic-cell"))
     (work / "block.toml").write_text(BLOCK.format(columns=COLUMNS))

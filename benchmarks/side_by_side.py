@@ -71,8 +71,8 @@ def parse_arguments():
     add("--twisting", choices=("sds", "marshall"), default="sds", help="twisting model of LAMMPS (default: sds)")
     add("--no-twisting", action="store_true", help="no twisting moments in any code; not with liggghts")
     add("--skin", type=float, default=0.05, help="skin of LAMMPS and LIGGGHTS, in mean radii (default: 0.05)")
-    add("--report", default=str(ROOT / "docs" / "results" / "side_by_side.md"),
-        help="page of results, written when all rounds are done (default: docs/results/side_by_side.md)")
+    add("--report", default=str(ROOT / "results" / "side_by_side.md"),
+        help="page of results, written when all rounds are done (default: results/side_by_side.md)")
     add("--no-report", action="store_true", help="print only")
     return parser.parse_args()
 
@@ -116,7 +116,7 @@ def check(options):
     options.state_of = dict(zip(folders, map(os.path.abspath, options.yade_state)))
     program = pathlib.Path(options.build) / "bin" / "whole_step"
     if not program.exists():
-        raise BadInput(f"{program} is not there; build it: cmake --preset release && "
+        raise BadInput(f"{program} does not exist; build it: cmake --preset release && "
                        "cmake --build --preset release --target whole_step")
     isostat = Isostat(program, options.cores[0])
     if max(options.threads) > 1 and not isostat.has("--threads"):

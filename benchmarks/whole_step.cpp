@@ -176,7 +176,7 @@ int main(int argc, char **argv)
   line.add_option("packing", options.packing, "specimen (.h5), folder of tables, or text of spheres")->required();
   line.add_option("--export", options.exported, "write the packing as text and stop");
   line.add_option("--copies", options.copies,
-                  "run so many copies of the packing, side by side, without contact history")
+                  "run this many copies of the packing, side by side, without contact history")
       ->check(CLI::PositiveNumber);
   line.add_option("--rate", options.rate, "axial strain rate, 1/s");
   line.add_option("--time-step", options.time_step, "s");
@@ -184,12 +184,12 @@ int main(int argc, char **argv)
   line.add_flag("--no-twisting", options.no_twisting, "leave twisting moments out of the law");
   line.add_option("--damping", options.damping, "local damping");
   line.add_option("--contact-damping", options.contact_damping, "share of critical damping of dashpots in contacts");
-  line.add_option("--free-grain-damping", options.free_grain_damping, "share that free grains lose");
+  line.add_option("--free-grain-damping", options.free_grain_damping, "share that rattlers lose");
   line.add_flag("--carry-grains", options.carry_grains, "grains share the homogeneous motion of the walls");
   line.add_option("--steps", options.steps, "timed steps per repeat");
   line.add_option("--warm-up", options.warm_up, "steps before");
   line.add_option("--threads", options.threads, "threads that share a step");
-  line.add_flag("--fixed-threads", options.fixed_threads, "so many, even where one is faster");
+  line.add_flag("--fixed-threads", options.fixed_threads, "this many, even where one is faster");
   line.add_option("--repeats", options.repeats, "timed blocks");
   line.add_option("--times", options.times, "write the figures of each timed block to this file, as JSON");
   return run_command(line, argc, argv, [&] { measure(options); });

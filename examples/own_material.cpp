@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A material of one's own in a soil column: shear stress follows a hyperbola, tau = G gamma / (1 + |gamma| / gamma_r)
+// Your own material in a soil column: shear stress follows a hyperbola, tau = G gamma / (1 + |gamma| / gamma_r)
 // (Kondner 1963), in each plane by itself and without hysteresis. What to see: under the same wavelet five times as
 // strong the displacement of the surface grows by another factor than five, as the soil softens.
 #include "fem/libraries.hpp"
@@ -11,7 +11,7 @@
 
 using namespace isostat;
 
-/// Elastic but for the shear stresses yz and xz. The state is that of Elastic, whose shear stress counts the strain.
+/// Elastic except for the shear stresses yz and xz. The state is that of Elastic, whose shear stress counts the strain.
 class Hyperbolic : public Elastic
 {
 public:

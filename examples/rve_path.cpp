@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A packing as a material point under a strain path of one's own: simple shear in two planes whose strains go round a
+// A packing as a material point under your own strain path: simple shear in two planes whose strains go round a
 // circle at constant volume, as under shaking in both horizontal directions. What to see: the shear stresses follow the
 // strains round the circle, out of phase with them, while the mean effective stress p' falls, at a void ratio that
 // stays what it is.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The gates beside the tests of the release preset. All are tried, and the last lines say what each found.
+# The gates besides the tests of the release preset. All are tried, and the last lines say what each found.
 #
 #   scripts/check_all.sh             the whole tree, with fem, coupling and MPI, and Debian 13: some two hours on two cores
 #   scripts/check_all.sh --grains    base and dem alone: some 25 minutes

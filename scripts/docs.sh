@@ -32,7 +32,7 @@ rm -rf "$site/cpp"
   xargs -r sed -i 's|<a href="#nested-classes">[^<]*</a>[^<]*||'
 
 # Debian's theme takes a style from the root of a web server and a script as a module: put both into the site, so that
-# pages work as files, too.
+# pages can be opened as files, too.
 javascript=/usr/share/javascript
 cp -L "$javascript/normalize.css/normalize.css" "$site/_static/styles/"
 sed -i 's|@import url(/javascript/normalize.css/normalize.css)|@import url(normalize.css)|' "$site/_static/styles/furo.css"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Looks for inputs on which a reader breaks, with libFuzzer and sanitizers: HOURS on all cores, shared among the targets
-# (tests/fuzz/*.cpp). What it has learnt stays in build/fuzz/corpus, and the next call goes on from there; what breaks a
+# (tests/fuzz/*.cpp). What it has learnt stays in build/fuzz/corpus, and the next call continues from there; what breaks a
 # target is left in build/fuzz/found. A found input belongs, with a word on what it was, into tests/fuzz/corpus/TARGET.
 #
 #   scripts/fuzz.sh HOURS [TARGET...]    scripts/fuzz.sh 0.1; scripts/fuzz.sh 8 scene plan

@@ -3,7 +3,7 @@
 
 tau = G gamma / (1 + G |gamma| / tau_max)                                             Hardin and Drnevich (1972)
 Unloading and reloading follow tau = tau_r + 2 f((gamma - gamma_r)/2) from the last turning point (Masing 1926); a
-branch that meets an older one, or the backbone, goes on along that (Pyke 1979; Kramer 1996, 6.4.3: extended rules).
+branch that meets an older one, or the backbone, continues along that (Pyke 1979; Kramer 1996, 6.4.3: extended rules).
 
 tested: tests/apps/column_others_test.py
 """

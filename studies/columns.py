@@ -42,7 +42,7 @@ def histories(store, planned):
 
 
 def library(path, executor, n, pressures, settings):
-    """Makes a library of apps/scenes/rve_library.toml with other settings, if it is not there: n seeds at each
+    """Makes a library of apps/scenes/rve_library.toml with other settings, if it does not exist: n seeds at each
     pressure, less those that cannot be prepared, which miss their density."""
     if path.exists():
         return

@@ -7,7 +7,7 @@ STUDENT = {2: 12.7, 3: 4.30, 4: 3.18, 5: 2.78, 6: 2.57, 8: 2.36, 10: 2.26, 12: 2
 
 
 def ensemble(values):
-    """Mean, standard deviation, standard error and number of the values that are there."""
+    """Mean, standard deviation, standard error and number of the values that exist."""
     values = np.array([v for v in values if v is not None and np.isfinite(v)], dtype=float)
     n = values.size
     if n == 0:

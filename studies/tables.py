@@ -50,7 +50,7 @@ def number(value, digits=5):
 
 
 def read_csv(path):
-    """Rows of a table as dictionaries; none if it is not there."""
+    """Rows of a table as dictionaries; none if it does not exist."""
     if not path.exists():
         return []
     with open(path, newline="", encoding="utf-8") as file:

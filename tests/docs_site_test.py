@@ -32,7 +32,7 @@ def main(binaries):
     site = build / "docs/html"
     lost = [page for page in PAGES if not (site / "docs" / f"{page}.html").is_file()]
     equations = (site / "docs/theory.html").read_text(encoding="utf-8").count('class="math notranslate nohighlight"')
-    print(f"pages that are not there: {lost}; equations in theory: {equations}")
+    print(f"pages that do not exist: {lost}; equations in theory: {equations}")
     return 0 if not lost and equations > 20 else 1
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Isostat as a user has it who installed it: the programs find what they need beside themselves, and the examples are
+"""Isostat as a user has it who installed it: the programs find what they need next to themselves, and the examples are
 built from outside by find_package(isostat) and show what their first lines say."""
 import pathlib
 import shutil

@@ -124,7 +124,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
 def with_laws(root):
-    """Enters the contact laws that are there in the table of dem."""
+    """Enters the existing contact laws in the table of dem."""
     laws = {f"contact/{folder.name}" for folder in (root / "dem/contact").glob("*/")}
     INNER["dem"].update({law: A_LAW for law in laws})
     INNER["dem"]["contact/laws"] |= laws

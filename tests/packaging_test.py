@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recipes of packages against the build: each names what CMake looks for, and asks for nothing that is not there."""
+"""Recipes of packages against the build: each names what CMake looks for, and asks for nothing that does not exist."""
 import ast
 import pathlib
 import re

@@ -14,7 +14,7 @@ SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.
 # The key of a refusal: "mesh.degree", prefix + ".density", fmt::format("stage.{}.friction", i), key("lot"), and the
 # {"cohesion", "must be ..."} of mohr_coulomb_problem().
 REFUSED = re.compile(r'(?:refuse\(\s*|key\()(?:\w+ \+ |fmt::format\(\s*)?"([\w.{}]+)"|return \{"(\w+)",\s*"')
-# Words of the limit in the row of the key; "": what is refused is said elsewhere (of the section, of another key).
+# Words of the limit in the row of the key; "": the limit is stated elsewhere (of the section, of another key).
 STATED = {
     "scene": {
         "specimen.pressure": "a twentieth of the modulus", "specimen.e_min": "Below `e_max`",

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ctest `style`: how long files, functions and lines may be, where a header is tested, why a tolerance is so large.
+"""The ctest `style`: how long files, functions and lines may be, where a header is tested, why a tolerance is so large;
+and phrases that a reader stumbles over, in pages, scenes, messages and comments.
 
     style.py [--root REPOSITORY] [--table]
 
@@ -8,10 +9,12 @@ Prints every violation as file:line and returns 1 if there is one; `--table` pri
 """
 import argparse
 import ast
+import io
 import pathlib
 import re
 import statistics
 import sys
+import tokenize
 
 MAX_FILE = 400  # lines
 MAX_FUNCTION = 60  # lines: one screen
@@ -26,6 +29,36 @@ BARE = {
     ".cpp": re.compile(rf"\b(?:EXPECT|ASSERT)_(?:NEAR|FLOAT_EQ)\(|\bDoubleNear\(|\b(?:EXPECT|ASSERT)_L[TE]\(.*{SMALL}"),
     ".py": re.compile(rf"assertAlmostEqual|\ballclose\(|assert_allclose|\bisclose\(|assertLess(?:Equal)?\(.*{SMALL}"),
 }
+# Phrases that are not written, and what to write. Names of keys and files are in `code marks`, or a string of one word.
+PHRASES = {
+    r"anew": "again", r"as good as none": "treated as missing", r"at any price": "(say what happens)",
+    r"(?<!-)beside(?!s)": "next to, with, in addition to, besides", r"but for": "except for", r"dear(er)?": "expensive",
+    r"for ever": "forever", r"for want of": "because ... is missing", r"free grains?": "rattler",
+    r"go(es)? home": "stop", r"go(es)? on|went on": "continue", r"goes without": "is missing",
+    r"hang(s|ing)? on": "depend on", r"(has|have) not (a|an|any|its|no|the)": "does not have",
+    r"(in|by) turns": "alternately, interleaved", r"(is|are) not there": "does not exist, is missing",
+    r"(is|are) to be": "(say who does it)", r"is no key of": "unknown key", r"is said": "(say who says it)",
+    r"it takes (fewer|more)": "it needs", r"key twice": "repeated key", r"let go|is lost to": "discarded",
+    r"looked at": "checked, inspected, used",
+    r"lots?(?! =)": "draw, at random", r"no part in": "is ignored, leaves out", r"nobody|somebody|whoever": "(name it)",
+    r"nor none": "or none", r"of no (effect|meaning|use)": "ignored, no effect", r"on its way": "(say to what)",
+    r"one's own": "your own, a user's", r"says? all about": "describes", r"so many": "this many", r"so-called": "",
+    r"(that|which) (is|are) there": "existing",
+    r"(stands?|stood)(?! for\b| in\b|-alone| alone| still)": "is, appears", r"strangers?": "untrusted, a user's",
+    r"tells?|told": "says, reports, distinguishes", r"to the bit": "bit for bit",
+    r"velocit(y|ies) of (P|S|shear) waves?": "V_s, shear-wave velocity", r"warned of": "a warning names",
+    r"what (came|comes) out": "results", r"what is left": "what remains",
+    r"who watches": "the observer", r"works as": "is",
+}
+OVERUSED = re.compile(r"\bof (?:its|their) own\b", re.I)  # at most once in a file
+STUMBLE = re.compile(r"\b(?:" + "|".join(PHRASES).replace(" ", r"(?:[ \t]+|[ \t]*\n[ \t]*)") + r")\b", re.I)
+TEXTS = {".cpp", ".hpp", ".c", ".h", ".py", ".md", ".toml", ".sh"}  # files whose English is checked
+# What of C++ is text for a reader: comments and strings.
+CPP_TEXT = re.compile(r"//[^\n]*|/\*.*?\*/|R\"\(.*?\)\"|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S)
+# No text: strings of one word; then code marks, targets of links, and marks that begin or join lines of a comment.
+NO_TEXT = (re.compile(r"([\"'])[\w.@/-]*\1"),
+           re.compile(r"`[^`\n]*`|\]\([^)\n]*\)|^\s*(?:///?<?|#+|\*|!)|\"\s*\n\s*f?\"", re.M))
+
 HELPERS = {"tests/support/near.hpp", "tests/apps/support.py", "tests/style.py"}
 
 # What opens a block of its own but is no function, and what names an existing test in a header's comment.
@@ -114,6 +147,55 @@ def check_mirrors(root, test):
             "what spans several belongs to tests/verification"]
 
 
+def blank(text):
+    return re.sub(r"[^\n]", " ", text)
+
+
+def text_of_cpp(text):
+    """Comments and strings, everything else blank; at the places they have in the file."""
+    kept, at = [], 0
+    for found in CPP_TEXT.finditer(text):
+        kept += [blank(text[at:found.start()]), blank(found[0]) if found[0][0] == "'" else found[0]]
+        at = found.end()
+    return "".join(kept) + blank(text[at:])
+
+
+def text_of_python(text):
+    lines = text.split("\n")
+    kept = [[" "] * len(line) for line in lines]
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type in (tokenize.STRING, tokenize.COMMENT) or tokenize.tok_name[token.type] == "FSTRING_MIDDLE":
+            for row in range(token.start[0], token.end[0] + 1):
+                first = token.start[1] if row == token.start[0] else 0
+                last = token.end[1] if row == token.end[0] else len(lines[row - 1])
+                kept[row - 1][first:last] = lines[row - 1][first:last]
+    return "\n".join("".join(line) for line in kept)
+
+
+def text_of_script(text):
+    return "\n".join(" " * line.find("#") + line[line.find("#"):] if "#" in line else "" for line in text.split("\n"))
+
+
+def check_phrases(root, path):
+    """Phrases of this file that a reader stumbles over, each with its line and what to write."""
+    name, suffix, text = path.relative_to(root), path.suffix, path.read_text(encoding="utf-8")
+    if suffix in {".cpp", ".hpp", ".c", ".h"}:
+        text = text_of_cpp(text)
+    elif suffix == ".py":
+        text = text_of_python(text)
+    elif suffix != ".md":
+        text = text_of_script(text)
+    for part in NO_TEXT:
+        text = part.sub(lambda found: blank(found[0]), text)
+    own = list(OVERUSED.finditer(text))
+    problems = [f"{name}: '{own[0][0]}' {len(own)} times; write: separate, or its own X"] if len(own) > 1 else []
+    for match in STUMBLE.finditer(text):
+        words = " ".join(match[0].split())
+        instead = next((write for phrase, write in PHRASES.items() if re.fullmatch(phrase, words, re.I)), "other words")
+        problems.append(f"{name}:{text.count(chr(10), 0, match.start()) + 1}: '{words}'; write: {instead}")
+    return problems
+
+
 def check_file(root, path):
     name = path.relative_to(root)
     text = path.read_text(encoding="utf-8")
@@ -161,6 +243,10 @@ def main():
     for file in files:
         found, lengths[file.relative_to(root)] = check_file(root, file)
         problems += found
+    texts = [*root.glob("*.md"), *(f for top in (*tops, "docs", "python") for f in sorted((root / top).rglob("*")))]
+    for file in texts:
+        if file.suffix in TEXTS and file.name != "CHANGELOG.md" and file != pathlib.Path(__file__).resolve():
+            problems += check_phrases(root, file)
     for problem in problems:
         print(problem)
     if arguments.table:

@@ -29,7 +29,7 @@ PointState point_state(const Gradient &gradient, const Stress &stress);
 class BlockFiles
 {
 public:
-  /// @param n_maps  that an earlier call has left, and this one goes on from
+  /// @param n_maps  that an earlier call has left, and this one continues from
   /// @throws InputError  there are fewer
   BlockFiles(const std::filesystem::path &folder, const Discretisation<2> &space, const BlockMaterial &material,
              bool undrained, std::size_t n_maps = 0);

@@ -31,8 +31,8 @@ void run_scene(const SceneOptions &options)
   if (has_finished(request.folder, request.use, to_toml(request.scene)))
     {
       if (const Json summary = read_json(request.folder / "summary.json"); !summary.at("complete"))
-        throw RunFailure(fmt::format("{}: this run has ended before its time, and would again: {}",
-                                     request.folder.string(), summary.at("failure").get<std::string>()));
+        throw RunFailure(fmt::format("{}: this run has failed, and would fail again: {}", request.folder.string(),
+                                     summary.at("failure").get<std::string>()));
       return tell_finished(request.folder, "biaxial", !options.no_figures);
     }
   check_result_folder(request.folder, request.use);

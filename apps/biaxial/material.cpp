@@ -10,7 +10,7 @@ namespace isostat
 {
 namespace
 {
-/// Specimen of every point. Those of the weak zone have no lot.
+/// Specimen of every point. Those of the weak zone are not drawn.
 std::vector<SpecimenRequest> requests(const BiaxialScene &scene, const Discretisation<2> &space)
 {
   std::vector<SpecimenRequest> all;

@@ -63,7 +63,7 @@ std::string beyond_small(const BiaxialSummary &s)
                      100 * *s.large_from, 100 * small);
 }
 
-/// Null where a run starts anew.   @throws InputError  none that can be read, or of another scene
+/// Null where a run starts again.   @throws InputError  none that can be read, or of another scene
 std::unique_ptr<ColumnCheckpoint> checkpoint_of(const BiaxialRequest &request)
 {
   if (request.use != FolderUse::resume)
@@ -90,7 +90,7 @@ public:
     resumed_->get(summary_);
     if (summary_.steps != statics_.n_steps() || summary_.steps > scene_.test.steps)
       throw InputError(
-          fmt::format("{}: has {} steps in its summary and {} in its state, of {}: it is damaged. Start anew "
+          fmt::format("{}: has {} steps in its summary and {} in its state, of {}: it is damaged. Start again "
                       "with --overwrite.",
                       resumed_->file, summary_.steps, statics_.n_steps(), scene_.test.steps));
     if (resumed_->numbers.contains("large_from"))
@@ -180,7 +180,7 @@ private:
   [[noreturn]] void stop()
   {
     save();
-    throw Interrupted(fmt::format("interrupted after step {}; go on with --resume", summary_.steps));
+    throw Interrupted(fmt::format("interrupted after step {}; continue with --resume", summary_.steps));
   }
 
   void record()

@@ -10,7 +10,7 @@ namespace isostat
 {
 using BiaxialRequest = RunRequest<BiaxialScene>;
 
-/// What came out.
+/// Results of a run.
 struct BiaxialSummary
 {
   std::size_t steps = 0, points = 0;
@@ -43,9 +43,9 @@ struct BiaxialSummary
   }
 };
 
-/// Runs a scene and leaves all files but the summary, or goes on from its newest checkpoint to the same bits. A step
+/// Runs a scene and leaves all files but the summary, or continues from its newest checkpoint to the same bits. A step
 /// without equilibrium ends the run early: what it found so far stays.
-/// @throws InputError  before anything that is there is changed
+/// @throws InputError  before anything existing is changed
 /// @throws Interrupted  after a signal, with a checkpoint
 /// tested: tests/apps/biaxial_test.py, tests/apps/biaxial_resume_test.py
 BiaxialSummary run_biaxial(const BiaxialRequest &request);

@@ -27,9 +27,9 @@ constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 constexpr Section sections[] = {
   {.name = "mesh", .text = "The block: plane strain, x across, z up."},
   {.name = "soil", .text = "What it is made of.", .kind_key = "material", .kinds_title = "Materials"},
-  {.name = "nonlocal", .text = "A length, which the thickness of a shear band then has instead of that of an element."},
+  {.name = "nonlocal", .text = "A length that sets the thickness of a shear band, instead of the size of an element."},
   {.name = "weak", .text = "A square of elements that differs from the rest, where a shear band can start."},
-  {.name = "water", .text = "What the water in the pores does. It bears any suction: no limit of cavitation is set."},
+  {.name = "water", .text = "Water in the pores. It bears any suction: cavitation is not modelled."},
   {.name = "test", .text = "Constant pressure on the sides; the top moves down, smooth as the base."},
   {.name = "newton", .text = "Solver of a load step."},
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
@@ -60,7 +60,7 @@ constexpr Key block_keys[] = {
            "grains at every Gauss point."},
   {.path = "soil.shear_modulus", .field = member<&BiaxialScene::soil, &ColumnLayer::shear_modulus>, .unit = unit::MPa,
    .presence = Presence::required, .value = "50 MPa", .range = stresses, .reason = because_stresses, .kinds = formula,
-   .text = "Shear modulus of small strain; of iwan and mohr_coulomb at the reference pressure."},
+   .text = "Shear modulus at small strain; for iwan and mohr_coulomb at the reference pressure."},
   {.path = "soil.poisson_ratio", .field = member<&BiaxialScene::soil, &ColumnLayer::poisson_ratio>, .value = "0.3",
    .range = {0, 0.5, false, true}, .kinds = formula, .text = "Poisson's ratio."},
 };
@@ -73,7 +73,7 @@ constexpr Key test_keys[] = {
            "newton.max_iterations = 0 and relaxation."},
   {.path = "nonlocal.stiffness", .field = member<&BiaxialScene::nonlocal, &NonlocalParameters::stiffness>, .value = "1",
    .range = not_negative,
-   .text = "Of the elastic stress against differences of strain and mean strain, over the wave moduli at the start."},
+   .text = "Stiffness against differences between strain and mean strain, over the wave moduli at the start."},
 
   {.path = "weak.cells", .field = member<&BiaxialScene::weak, &WeakZone::cells>, .value = "0",
    .text = "Elements along each side of the square; 0: there is none. The square lies in the block."},
@@ -82,8 +82,8 @@ constexpr Key test_keys[] = {
   {.path = "weak.row", .field = member<&BiaxialScene::weak, &WeakZone::row>, .value = "0",
    .text = "Its lowest element along z, counted from 0."},
   {.path = "weak.factor", .field = member<&BiaxialScene::weak, &WeakZone::factor>, .value = "0.8", .range = positive,
-   .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); of no meaning "
-           "to grains."},
+   .text = "Factor on the stiffness, and on the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); "
+           "ignored for grains."},
   {.path = "weak.relative_density",
    .field = member<&BiaxialScene::weak, &WeakZone::grains, &SpecimenRequest::relative_density>,
    .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
@@ -94,15 +94,14 @@ constexpr Key test_keys[] = {
 
   {.path = "test.confinement", .field = member<&BiaxialScene::test, &BiaxialTest::confinement>, .unit = unit::kPa,
    .value = "100 kPa", .range = stresses, .reason = because_stresses,
-   .text = "Isotropic effective stress at the start, and what is on the sides throughout, beside the pore pressure at "
-           "the start."},
+   .text = "Isotropic effective stress at the start. With the initial pore pressure it acts on the sides throughout."},
   {.path = "test.axial_strain", .field = member<&BiaxialScene::test, &BiaxialTest::axial_strain>, .value = "0.05",
-   .range = {-0.5, 0.5}, .text = "At the end: way of the top over the height, compression positive."},
+   .range = {-0.5, 0.5}, .text = "Final displacement of the top over the height, compression positive."},
   {.path = "test.steps", .field = member<&BiaxialScene::test, &BiaxialTest::steps>, .value = "50", .range = counts,
    .text = "Equal load steps."},
   {.path = "test.duration", .field = member<&BiaxialScene::test, &BiaxialTest::duration>,
    .unit = {Dimension::time, "s"}, .value = "100 s", .range = positive,
-   .text = "Of the test; counts only where water moves."},
+   .text = "Duration of the test; matters only where water moves."},
 };
 
 constexpr const char *drainages[] = {"drained", "undrained"};
@@ -115,9 +114,10 @@ constexpr Key water_keys[] = {
            "effective."},
   {.path = "water.permeability", .field = member<&BiaxialScene::water, &BlockWater::permeability>, .unit = unit::m_s,
    .value = "0 m/s", .range = not_negative,
-   .text = "Hydraulic conductivity k, by which water moves inside of an undrained block; 0 m/s: it does not."},
+   .text = "Hydraulic conductivity k inside an undrained block; 0 m/s: water does not move."},
   {.path = "water.porosity", .field = member<&BiaxialScene::water, &BlockWater::porosity>, .value = "0.4",
-   .range = {0, 1, true, true}, .text = "Share of the pores, whose water is compressible (2.2 GPa); undrained."},
+   .range = {0, 1, true, true}, .text = "Pore volume over total volume; its water is compressible (2.2 GPa). For "
+                                        "undrained blocks."},
 };
 
 constexpr Key output_keys[] = {
@@ -137,14 +137,23 @@ constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dime
 constexpr const char *manual_head =
 R"(# Scene reference of the biaxial block
 
-A scene is one TOML file that says all about a run of `biaxial`. This page is generated from the table in
-`apps/biaxial/scene.cpp` (`biaxial_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/biaxial`.
+A scene is one TOML file that describes a run of `biaxial`. This page is "
+ "generated from the table in
+`apps/biaxial/scene.cpp` (`biaxial_scene_manual()`); a test compares them. Ready "
+ "scenes are in `apps/scenes/biaxial`.
 
-- Quantities are text with a unit: `"1 m"`, `"100 kPa"`, `"30 deg"`. A bare number, or the unit of something else, is an
-  error. What has no dimension is a plain number.
-- Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
-- An unknown key is an error, and so is a key twice. Compression is positive; x points across, z up.
-- `--set key=value` on the command line overrides the file: `--set test.steps=100`.
+- Quantities are text with a unit: `"1 m"`, `"100 kPa"`, `"30 deg"`. A bare number, or the unit of something else, "
+                                                                 "is an
+  error. What has no dimension is a plain "
+                                                                 "number.
+- Numbers other than 0 are between 1e-30 "
+                                                                 "and 1e30 in size, in SI units.
+- An unknown key is "
+                                                                 "an error, and so is a repeated key. Compression is "
+                                                                 "positive; x points across, z up.
+- `--set "
+                                                                 "key=value` on the command line overrides the file: "
+                                                                 "`--set test.steps=100`.
 
 )";
 // clang-format on
@@ -153,8 +162,8 @@ void check_undrained(const SceneDocument &document, const BiaxialMesh &mesh)
 {
   if (mesh.degree != 2)
     document.refuse("mesh.degree",
-                    fmt::format("must be 2 in an undrained block, beside a pore pressure of degree 1, and "
-                                "is {}. Give degree = 2 and points = 3.",
+                    fmt::format("must be 2 in an undrained block, with a pore pressure of degree 1, and is {}. Give "
+                                "degree = 2 and points = 3.",
                                 mesh.degree));
   if (mesh.points < 3)
     document.refuse("mesh.points", fmt::format("must be 3 or 4 in an undrained block, and is {}: with fewer, elements "
@@ -185,13 +194,13 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
                     "it.");
   if (scene.weak.column + scene.weak.cells > scene.mesh.cells_across)
     document.refuse("weak.column",
-                    fmt::format("and weak.cells = {} let the weak zone reach out of the block of {} elements "
+                    fmt::format("and weak.cells = {} let the weak zone extend beyond the block of {} elements "
                                 "across. Correct one of them.",
                                 scene.weak.cells, scene.mesh.cells_across));
   if (scene.weak.row + scene.weak.cells > scene.mesh.cells_up)
     document.refuse("weak.row",
-                    fmt::format("and weak.cells = {} let the weak zone reach out of the block of {} elements "
-                                "up. Correct one of them.",
+                    fmt::format("and weak.cells = {} let the weak zone extend beyond the block of {} elements up. "
+                                "Correct one of them.",
                                 scene.weak.cells, scene.mesh.cells_up));
 }
 

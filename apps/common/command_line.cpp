@@ -44,7 +44,7 @@ int run_command(CLI::App &line, int argc, char **argv, const std::function<void(
 
 namespace
 {
-/// What is closed of the standard files would be the next file that a program opens, and take what it tells.
+/// What is closed of the standard files would be the next file that a program opens, and take its output.
 void open_standard_files()
 {
   for (int number = 0; number < 3; ++number)
@@ -57,7 +57,7 @@ int guarded(const std::function<void()> &program)
 {
   open_standard_files();
   std::signal(SIGXFSZ, SIG_IGN); // a file beyond its limit (ulimit -f) is an error of write(), with a message
-  std::signal(SIGPIPE, SIG_IGN); // who reads what is told may have ended: a run goes on
+  std::signal(SIGPIPE, SIG_IGN); // the reader of messages may have ended: a run continues
   try
     {
       use_instruction_set_of_environment();
@@ -66,9 +66,9 @@ int guarded(const std::function<void()> &program)
       if (std::fflush(stdout) != 0 || std::ferror(stdout))
         {
           const int code = errno ? errno : EIO;
-          std::clearerr(stdout); // it is told once
+          std::clearerr(stdout); // it is reported once
           throw RunFailure(
-              fmt::format("what is printed cannot be written: {}; files of results are whole", std::strerror(code)));
+              fmt::format("output cannot be printed: {}; files of results are whole", std::strerror(code)));
         }
       return 0;
     }
@@ -85,7 +85,7 @@ int guarded(const std::function<void()> &program)
   catch (const std::bad_alloc &)
     {
       std::fputs("failed: there is not enough memory, or a limit of it (ulimit -v) is reached. Give fewer grains or "
-                 "points, or run fewer side by side; what a checkpoint holds goes on with --resume\n",
+                 "points, or run fewer side by side; --resume continues from a checkpoint\n",
                  stderr);
       return 1;
     }

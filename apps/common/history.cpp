@@ -28,12 +28,12 @@ double pore_pressure_ratio(const PathState &path, const Observation &seen)
   return 1 - (path.undrained->vertical ? seen.stress[1] : seen.p) / path.undrained->stress;
 }
 
-/// It has a stage whose three normal stresses p and q do not tell.
+/// It has a stage whose three normal stresses do not follow from p and q.
 bool has_path(const Scene &scene)
 {
   return std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage &stage) { return as<Path>(stage); });
 }
-/// Its numbers of stages do not tell how often each was done.
+/// Its numbers of stages do not show how often each was done.
 bool has_repeat(const Scene &scene)
 {
   return std::any_of(scene.stages.begin(), scene.stages.end(), [](const Stage &stage) { return as<Repeat>(stage); });

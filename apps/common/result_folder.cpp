@@ -81,7 +81,7 @@ bool is_unused(const fs::path &folder)
 
 void expect_results(const fs::path &folder)
 {
-  for (const char *name : {scene_name, provenance_name}) // a folder of one's own may hold a scene
+  for (const char *name : {scene_name, provenance_name}) // a user's folder may hold a scene
     if (!fs::exists(folder / name))
       throw InputError(fmt::format("{}: not overwritten, because it holds no {} and may not be a results folder. "
                                    "Choose another --output.",
@@ -95,7 +95,7 @@ void empty_folder(const fs::path &folder)
     if (const fs::path name = entry.path().filename();
         name != lock_name && name != scene_name && name != provenance_name)
       paths.push_back(entry.path());
-  // last what tells that these are results, in the reverse of the order in which it was written: it may be killed here
+  // last what marks these as results, in the reverse of the order in which it was written: it may be killed here
   for (const char *name : {scene_name, provenance_name})
     paths.push_back(folder / name);
   for (const fs::path &path : paths)
@@ -114,10 +114,10 @@ FileLock lock_folder(const fs::path &folder)
   try
     {
       if (!within_patience([&] { return static_cast<bool>(lock = FileLock::attempt(folder / lock_name)); }))
-        throw InputError(fmt::format("{}: another program is at work in it. Wait for it, or give another --output.",
-                                     folder.string()));
+        throw InputError(
+            fmt::format("{}: another program is using it. Wait for it, or give another --output.", folder.string()));
     }
-  catch (const NoLocks &) // then nobody is told
+  catch (const NoLocks &) // then no message
     {}
   return lock;
 }
@@ -135,7 +135,7 @@ void make_writable_folder(const fs::path &folder)
 {
   std::error_code failure;
   if (fs::is_symlink(folder, failure) && !fs::exists(folder, failure))
-    throw InputError(fmt::format("{}: is a link to {}, which is not there. Remove it, or choose another --output.",
+    throw InputError(fmt::format("{}: is a link to {}, which does not exist. Remove it, or choose another --output.",
                                  folder.string(), fs::read_symlink(folder, failure).string()));
   fs::create_directories(folder, failure);
   if (failure || !fs::is_directory(folder))
@@ -166,14 +166,14 @@ void check_result_folder(const fs::path &folder, FolderUse use)
                                      fs::exists(folder / scene_name, failure)
                                          ? "the run in it ended before its first checkpoint"
                                          : "there is no folder checkpoint in it",
-                                     is_unused(folder) ? "without" : "it anew with --overwrite in place of"));
+                                     is_unused(folder) ? "without" : "it again with --overwrite in place of"));
       return expect_free(folder);
     }
   const bool used = !is_unused(folder);
   if (used && use == FolderUse::fresh)
     throw InputError(fmt::format(
         "{}: the results folder exists. Give --overwrite to replace it{} or --output for another one.", folder.string(),
-        fs::exists(folder / "checkpoint", failure) ? ", --resume to go on from its checkpoint," : ""));
+        fs::exists(folder / "checkpoint", failure) ? ", --resume to continue from its checkpoint," : ""));
   if (used)
     expect_results(folder);
   try_writable_folder(folder);

@@ -15,8 +15,8 @@ namespace isostat
 enum class FolderUse
 {
   fresh,     ///< must not exist yet
-  overwrite, ///< results that are there are removed first
-  resume     ///< goes on from the newest checkpoint
+  overwrite, ///< existing results are removed first
+  resume     ///< continues from the newest checkpoint
 };
 
 inline FolderUse folder_use(bool overwrite) { return overwrite ? FolderUse::overwrite : FolderUse::fresh; }
@@ -27,7 +27,7 @@ std::filesystem::path output_folder(const std::filesystem::path &requested, cons
 /// Looks whether a run may use the folder and could write to it. Leaves all as it is: call it first, so that a mistake
 /// shows before hours of preparation.
 /// @throws InputError  it exists and neither --overwrite nor --resume was given; --overwrite of a folder that does not
-///         look like results; --resume without a checkpoint; a path that cannot be written; a run is at work in it
+///         look like results; --resume without a checkpoint; a path that cannot be written; a run is using it
 void check_result_folder(const std::filesystem::path &folder, FolderUse use);
 
 /// Makes the folder and locks it; with FolderUse::overwrite removes what was in it. Call it when the run is ready to
@@ -36,8 +36,8 @@ void check_result_folder(const std::filesystem::path &folder, FolderUse use);
 /// @pre check_result_folder()   tested: tests/apps/shared_folder_test.py
 [[nodiscard]] FileLock open_result_folder(const std::filesystem::path &folder, FolderUse use);
 
-/// A lock on a folder that is there (of its file .lock), or none where the file system has no locks. Waits up to five
-/// seconds for what a dying process still holds.   @throws InputError  a program is at work in it
+/// A lock on an existing folder (of its file .lock), or none where the file system has no locks. Waits up to five
+/// seconds for what a dying process still holds.   @throws InputError  a program is using it
 [[nodiscard]] FileLock lock_folder(const std::filesystem::path &folder);
 
 /// Whether there is nothing in it, or only what a program leaves that was killed as it began.
@@ -56,8 +56,8 @@ bool folder_exists(const std::filesystem::path &folder);
 void make_writable_folder(const std::filesystem::path &folder);
 
 /// Writes scene.toml (resolved: every key) and provenance.txt (version, compiler, libraries, time, and what `more`
-/// tells: name and value). What earlier calls left in provenance.txt, of a run that goes on or a campaign that grows,
-/// stays above an empty line.   tested: tests/apps/column_ensemble_test.py, tests/apps/biaxial_resume_test.py
+/// reports: name and value). What earlier calls left in provenance.txt, of a run that continues or a campaign that
+/// grows, stays above an empty line.   tested: tests/apps/column_ensemble_test.py, tests/apps/biaxial_resume_test.py
 void write_provenance(const std::filesystem::path &folder, const std::string &scene_text,
                       const std::string &command_line, const std::vector<std::pair<std::string, std::string>> &more);
 /// The same of a scene of grains, with instruction set and seed.

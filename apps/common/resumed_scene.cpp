@@ -92,11 +92,11 @@ void check_resumed_scene(const std::filesystem::path &folder, const Checkpoint &
       const auto refuse = [&](const char *why) {
         throw InputError(
             fmt::format("{}: stage.{}.{} = {}, but the checkpoint has {}: {}. Give a larger value of a stage "
-                        "that is not over, or start anew in another folder.",
+                        "that is not over, or start again in another folder.",
                         folder.string(), change.stage, change.key, change.now, change.before, why));
       };
       if (!(amount(change, change.now) > amount(change, change.before)))
-        refuse("an end can be put off only, because the run has gone on since (max_steps = 0 is no limit)");
+        refuse("only a later end is possible, because the run has continued since (max_steps = 0: no limit)");
       if (!is_open(change, checkpoint.drive.place, before, after))
         refuse("this stage is over");
     }

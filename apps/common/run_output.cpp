@@ -55,7 +55,7 @@ RunOutput::RunOutput(fs::path folder, const Scene &scene, const std::map<std::st
   for (std::uint64_t k = 0; k < written_.snapshots; ++k)
     n_missing += !fs::exists(snapshot_file(k), ignored);
   if (n_missing > 0)
-    warn(fmt::format("{}: {} of {} snapshots are not there any more; the run goes on without them",
+    warn(fmt::format("{}: {} of {} snapshots no longer exist; the run continues without them",
                      (folder_ / "snapshots").string(), n_missing, written_.snapshots));
 }
 
@@ -145,7 +145,7 @@ void restore(const Checkpoint &checkpoint, Assembly &assembly)
     const auto found = checkpoint.assembly.find(name);
     if (found == checkpoint.assembly.end())
       throw InputError(
-          fmt::format("the checkpoint holds no assembly/@{}; it is damaged. Start anew with --overwrite.", name));
+          fmt::format("the checkpoint holds no assembly/@{}; it is damaged. Start again with --overwrite.", name));
     value = found->second;
   });
   assembly.set_energy_memory(memory);

@@ -26,7 +26,7 @@ private:
   Progress progress_;
 };
 
-/// Columns of history.csv: where the run stands, the micromechanics, of a periodic cell its stress tensor and shear
+/// Columns of history.csv: where the run is, the micromechanics, of a periodic cell its stress tensor and shear
 /// strain, of a box the normal stresses where a stage is a path, the energy balance where it is measured; volumetric
 /// strain, ratio of excess pore pressure (0 while water drains), and cycles with the share of the present one.
 std::vector<RecordColumn> history_columns(const Scene &scene);
@@ -68,7 +68,7 @@ private:
   Progress progress_;
   Stopwatch since_checkpoint_;
   std::optional<Checkpoint> kept_; ///< in memory
-  std::uint64_t looked_ = 0;       ///< step at which the clock was last looked at
+  std::uint64_t looked_ = 0;       ///< step at which the clock was last read
 };
 
 /// Puts the sums of a checkpoint back into the assembly.

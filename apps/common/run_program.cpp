@@ -77,7 +77,7 @@ int run_program(std::vector<std::string> command, const fs::path &log)
     arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const KeyboardNoted noted; // the program has them by default: what is caught is not handed on
-  unlink(log.c_str());       // it may be a link to a file of somebody
+  unlink(log.c_str());       // it may be a link to a user's file
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), as_new_log, 0644);

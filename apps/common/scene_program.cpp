@@ -22,15 +22,15 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
       ->allow_extra_args(false); // else it takes the scene, too
   line.add_flag("--validate", o.validate, "check the scene, print it with every key, and stop");
   line.add_flag("--print-defaults", o.print_defaults, "print a commented scene with all keys, units and ranges");
-  CLI::Option *overwrite = line.add_flag("--overwrite", o.overwrite, "replace results that are there");
+  CLI::Option *overwrite = line.add_flag("--overwrite", o.overwrite, "replace existing results");
   if (program.manual_page)
     {
       line.add_flag("--print-manual", o.print_manual,
                     fmt::format("print {}: every key of a scene", program.manual_page));
-      line.add_flag("--resume", o.resume, "go on from the newest checkpoint, to the same bits")->excludes(overwrite);
+      line.add_flag("--resume", o.resume, "continue from the newest checkpoint, to the same bits")->excludes(overwrite);
     }
   line.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
-  line.add_flag("--no-figures", o.no_figures, "leave no figures and no report at the end");
+  line.add_flag("--no-figures", o.no_figures, "make no figures and no report at the end");
   line.add_option("-t,--threads", o.threads, program.threads_text)->check(CLI::Range(0, 1024));
 }
 
@@ -117,15 +117,15 @@ void note_instruction_set(const std::string &made_with)
 
 void tell_finished(const std::filesystem::path &folder, const char *program, bool figures, const char *hint)
 {
-  fmt::print("{}: this run has finished, there is nothing to resume; its results are in summary.txt.", folder.string());
+  fmt::print("{}: this run has finished; there is nothing to resume; its results are in summary.txt.", folder.string());
   if (figures && !std::filesystem::exists(folder / "report.html"))
     {
-      fmt::print(" Its figures are missing, they are drawn now.\n");
+      fmt::print(" Its missing figures are drawn now.\n");
       std::fflush(stdout);
       fmt::print("  {}\n", draw_figures(folder, program));
     }
   else
-    fmt::print("{} Start it anew with --overwrite.\n", hint);
+    fmt::print("{} Start it again with --overwrite.\n", hint);
 }
 
 bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene, bool end_may_change)

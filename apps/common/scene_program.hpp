@@ -57,26 +57,26 @@ private:
   int parse_and_run(int argc, char **argv) const;
 };
 
-/// First line in which two texts differ, as it stands in the second.
+/// First line in which two texts differ, as it is in the second.
 /// tested: tests/apps/command_line_test.py, tests/apps/resistance_test.py
 std::string first_difference(const std::string &one, const std::string &other);
 
 /// A run is resumed with the scene of its checkpoint only.   @throws InputError  the scenes differ
 void check_same_scene(const std::filesystem::path &folder, const std::string &checkpoint, const std::string &scene);
 
-/// Says on stderr if a checkpoint comes from another instruction set: the run goes on, but not to the same bits.
+/// Says on stderr if a checkpoint comes from another instruction set: the run continues, but not to the same bits.
 /// tested: tests/apps/instruction_sets_test.py
 void note_instruction_set(const std::string &made_with);
 
 /// Whether a run that --resume asks for has finished: its summaries are there.
-/// @param end_may_change  another scene may put the end off: it goes on if there is a checkpoint, which knows
+/// @param end_may_change  another scene may put the end off: it continues if there is a checkpoint, which knows
 /// @throws InputError  it was another scene
 /// tested: tests/apps/kill_resume_test.py, tests/apps/soil_column_resume_test.py
 bool has_finished(const std::filesystem::path &folder, FolderUse use, const std::string &scene,
                   bool end_may_change = false);
 
 /// What there is to do about it: says so on stdout, and draws what is missing of its figures and report, if `figures`.
-/// @param hint  a sentence on how it could go on
+/// @param hint  a sentence on how it could continue
 /// @throws Interrupted  as draw_figures()
 /// tested: tests/apps/figures_interrupt_test.py
 void tell_finished(const std::filesystem::path &folder, const char *program, bool figures, const char *hint = "");

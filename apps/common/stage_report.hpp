@@ -11,6 +11,6 @@ namespace isostat
 void add_response(const DriveState &state, const Scene &scene, Summary &summary);
 /// Ends, lost control, and what is repeated.
 void add_stages(const DriveState &state, const Scene &scene, Summary &summary);
-/// What of it is warned of: "control lost: ...", "stage 1 (path): ended by max_steps ...".
+/// Its warnings: "control lost: ...", "stage 1 (path): ended by max_steps ...".
 std::vector<std::string> stage_warnings(const DriveState &state, const Scene &scene);
 } // namespace isostat

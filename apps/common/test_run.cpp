@@ -86,8 +86,8 @@ void check_stages(const DriveState &state, std::size_t n_stages, const fs::path 
   const auto has = [&](const auto &told) { return told.stage < n_stages; };
   if (state.place.stage > n_stages || !std::ranges::all_of(state.ends, has) ||
       !std::ranges::all_of(state.control.losses, has))
-    throw InputError(fmt::format("{}: the checkpoint speaks of stages beyond the {} of the scene; it is damaged. Start "
-                                 "anew with --overwrite.",
+    throw InputError(fmt::format("{}: the checkpoint names stages beyond the {} of the scene; it is damaged. Start "
+                                 "again with --overwrite.",
                                  folder.string(), n_stages));
 }
 } // namespace
@@ -99,8 +99,8 @@ TestRun resume_test(const Scene &scene, const fs::path &folder, const StepSettin
   check_resumed_scene(folder, *run.resumed, scene);
   if (run.resumed->written.snapshots > run.resumed->written.rows)
     throw InputError(
-        fmt::format("{}: the checkpoint speaks of {} snapshots and {} rows, but there is a row of each; it is "
-                    "damaged. Start anew with --overwrite.",
+        fmt::format("{}: the checkpoint counts {} snapshots and {} rows, but each snapshot has a row; it is "
+                    "damaged. Start again with --overwrite.",
                     folder.string(), run.resumed->written.snapshots, run.resumed->written.rows));
   check_stages(run.resumed->drive, scene.stages.size(), folder);
   note_instruction_set(run.resumed->instruction_set);
@@ -140,7 +140,7 @@ Summary run_test(const RunRequest<Scene> &request, TestRun &run, RunObserver *wa
     }
   const double seconds = watch.seconds();
   if (outcome == RunOutcome::interrupted)
-    throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run.assembly->step()));
+    throw Interrupted(fmt::format("interrupted at step {}; continue with --resume", run.assembly->step()));
 
   const std::uint64_t steps = run.assembly->step();
   const Summary summary =

@@ -30,7 +30,7 @@ TestRun start_test(const Scene &scene, const Specimen &specimen, const StepSetti
 TestRun resume_test(const Scene &scene, const std::filesystem::path &folder, const StepSettings &how);
 
 /// Runs the stages and leaves history, snapshots, checkpoints and summary.json in the folder of the request.
-/// @param watcher  sees rows and steps beside them, and may stop the run; null: nobody
+/// @param watcher  sees rows and the steps between them, and may stop the run; null: none
 /// @pre check_result_folder()
 /// @throws RunFailure  with a line about the last checkpoint
 /// @throws Interrupted  stopped by a signal or the watcher; a checkpoint is there

@@ -17,8 +17,8 @@ struct TestEffort
   double seconds = 0;           ///< likewise
 };
 
-/// What is reported of a finished test, from its history and the driver's state. What a test does not have is not
-/// there.
+/// What is reported of a finished test, from its history and the driver's state. What a test does not have is
+/// left out.
 /// @param specimen  its figures (Specimen::numbers)
 Summary summarise(const RunHistory &run, const Scene &scene, const std::map<std::string, double> &specimen,
                   const DriveState &state, const TestEffort &effort);

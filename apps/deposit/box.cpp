@@ -21,15 +21,15 @@ constexpr Key in_mesh[] = {
   {.path = "points", .field = member<&ColumnMesh::points>, .value = "0", .range = {0, 4},
    .reason = "because elements are quadratic at most",
    .text = "Gauss points of an element along each axis; 0: as many as the degree in a column, else one more. 2 with "
-           "degree 2 (reduced integration) takes fewer packings. Else at least the degree."},
+           "degree 2 (reduced integration) needs fewer packings. Else at least the degree."},
   {.path = "sides", .field = member<&ColumnMesh::sides>, .value = "tied", .choices = side_choices,
-   .text = "tied: opposite points of the sides move as one, the soil goes on for ever; walls: of a strip (dimension "
-           "2), a box whose smooth walls move with its rigid base. The soil settles into equilibrium before anything "
-           "else, from K0 stresses: docs/theory_column.md, section 9."},
+   .text = "tied: opposite points of the sides move as one, as in ground without end; walls: a box (dimension 2) "
+           "whose smooth walls move with its rigid base. Its soil first settles into equilibrium from K0 stresses: "
+           "docs/theory_column.md, section 9."},
   {.path = "ground_x", .field = member<&ColumnMesh::ground_x>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
-   .text = "x of points of a surface that is not level, rising, on boundaries between elements; straight between them. "
-           "Only between walls; water, if there is any, covers all of it."},
+   .text = "x of the points of an uneven surface, rising, on boundaries between elements; straight lines connect "
+           "them. Only between walls; water, if any, covers all of it."},
   {.path = "ground_z", .field = member<&ColumnMesh::ground_z>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"4.87 m\", \"3.13 m\"]", .range = positive,
    .text = "Heights of these points above the base, the highest being that of all layers; where the ground is lower, "
@@ -40,7 +40,7 @@ constexpr Key in_load[] = {
   {.path = "surcharge_from", .field = member<&ColumnLoad::surcharge_from>, .unit = unit::m,
    .presence = Presence::optional, .value = "8 m", .range = not_negative,
    .text = "x where the surcharge begins, between walls, on a boundary between elements; left out: at the left wall. "
-           "In a box a surcharge on a part comes on when the soil has its K0 stress, and none has inertia."},
+           "In a box a surcharge on a part is applied after the K0 stress; no surcharge has inertia."},
   {.path = "surcharge_to", .field = member<&ColumnLoad::surcharge_to>, .unit = unit::m, .presence = Presence::optional,
    .value = "12 m", .range = positive,
    .text = "x where it ends; left out: at the right wall. Between `surcharge_from` and the width, likewise; a plate "
@@ -55,10 +55,10 @@ void check_ground(const SceneDocument &document, const ColumnScene &scene)
   if (mesh.ground_x.empty() && mesh.ground_z.empty())
     return;
   if (mesh.ground_z.empty())
-    document.refuse("mesh.ground_x", "needs mesh.ground_z: each point of the surface has one of both.");
+    document.refuse("mesh.ground_x", "needs mesh.ground_z: each point of the surface has both coordinates.");
   if (mesh.ground_x.size() != mesh.ground_z.size())
     document.refuse("mesh.ground_z",
-                    fmt::format("has length {}, mesh.ground_x {}; each point of the surface has one of both.",
+                    fmt::format("has length {}, mesh.ground_x {}; each point of the surface has both coordinates.",
                                 mesh.ground_z.size(), mesh.ground_x.size()));
   const GroundLine ground = ground_line(mesh);
   try
@@ -103,8 +103,8 @@ void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("analysis.kind", "must not be \"consolidation\" in a box; shake it, or move a plate.");
   if (scene.slope.tangent > 0)
     document.refuse("slope.angle",
-                    "turns the axes of an infinite slope; a box stands upright. Give the inclined surface "
-                    "by mesh.ground_x and mesh.ground_z.");
+                    "turns the axes of an infinite slope; a box is upright. Give the inclined surface by "
+                    "mesh.ground_x and mesh.ground_z.");
   if (scene.water.table > 0)
     document.refuse("water.table",
                     "must be 0 m in a box, where water covers all soil, or none if drainage is \"dry\".");
@@ -120,7 +120,7 @@ void check_places(const SceneDocument &document, const ColumnScene &scene)
     return;
   const char *key = load.surcharge_to ? "load.surcharge_to" : "load.surcharge_from";
   if (!(from < to && to <= width))
-    document.refuse(key, fmt::format("must leave a part of the surface with the surcharge: from {} m to {} m of {} m.",
+    document.refuse(key, fmt::format("must leave part of the surface under the surcharge: from {} m to {} m of {} m.",
                                      number_text(from), number_text(to), number_text(width)));
   if (from == 0 && load.surcharge_from)
     document.refuse("load.surcharge_from", "must be above 0 m, or be left out: then it begins at the wall.");
@@ -132,7 +132,7 @@ void check_places(const SceneDocument &document, const ColumnScene &scene)
                                         "of that.",
                                         number_text(width / scene.mesh.cells_across)));
   if (scene.analysis.kind == AnalysisKind::plate)
-    document.refuse(key, "has no meaning beside a plate; a surcharge bears on all of the surface then. Remove it.");
+    document.refuse(key, "has no meaning with a plate; a surcharge then bears on all of the surface. Remove it.");
 }
 } // namespace
 

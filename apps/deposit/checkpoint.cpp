@@ -50,7 +50,7 @@ const auto &field(const ColumnCheckpoint &checkpoint, const Fields &fields, cons
 {
   const auto found = fields.find(name);
   if (found == fields.end())
-    throw InputError(fmt::format("{}: holds no {}; a run cannot go on from it. Start anew with --overwrite.",
+    throw InputError(fmt::format("{}: holds no {}; a run cannot continue from it. Start again with --overwrite.",
                                  checkpoint.file, name));
   return found->second;
 }
@@ -79,7 +79,7 @@ std::size_t ColumnCheckpoint::count(const std::string &name) const
 {
   const double value = number(name);
   if (!is_count(value, 0x1p53))
-    throw InputError(fmt::format("{}: {} = {}, expected a whole number from 0: the file is damaged. Start anew with "
+    throw InputError(fmt::format("{}: {} = {}, expected a whole number from 0: the file is damaged. Start again with "
                                  "--overwrite.",
                                  file, name, value));
   return static_cast<std::size_t>(value);
@@ -94,7 +94,7 @@ const std::vector<double> &ColumnCheckpoint::vector(const std::string &name, std
 {
   const std::vector<double> &values = vector(name);
   if (values.size() != size)
-    throw InputError(fmt::format("{}: {} are {} numbers, not {}: the file is damaged. Start anew with --overwrite.",
+    throw InputError(fmt::format("{}: {} are {} numbers, not {}: the file is damaged. Start again with --overwrite.",
                                  file, name, values.size(), size));
   return values;
 }

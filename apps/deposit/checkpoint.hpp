@@ -7,7 +7,7 @@
 
 namespace isostat
 {
-/// All that a killed run of a column or a block needs to go on to the same bits.
+/// All that a killed run of a column or a block needs to continue to the same bits.
 struct ColumnCheckpoint
 {
   SolverState state;

@@ -22,8 +22,8 @@ void check_mesh(const SceneDocument &document, const ColumnScene &scene)
                     "of equal degree. Give degree = 2, or drainage = \"undrained\" or \"dry\".");
   if (scene.water.drainage == Drainage::undrained && scene.mesh.dimension != 1)
     document.refuse("mesh.dimension",
-                    "must be 1 if water.drainage is \"undrained\", because only in a column the pore "
-                    "pressure follows from vertical equilibrium. Give drainage = \"coupled\", if need "
+                    "must be 1 if water.drainage is \"undrained\", because only in a column does the "
+                    "pore pressure follow from vertical equilibrium. Give drainage = \"coupled\", if need "
                     "be with a permeability of 0 m/s.");
   if (scene.mesh.distributed && scene.mesh.dimension == 1)
     document.refuse("mesh.distributed", "must be false in a column (dimension 1), which every rank solves as a whole.");
@@ -98,7 +98,7 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
                                                      number_text(scene.water.density)));
   if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))
     document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
-                                              "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water shall move.");
+                                              "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water should move.");
   if (layer.material == LayerMaterial::iwan)
     check_iwan(document, prefix, layer.iwan);
   if (layer.material == LayerMaterial::mohr_coulomb)
@@ -124,7 +124,7 @@ void check_motions(const SceneDocument &document, const ColumnScene &scene)
       const std::string prefix = fmt::format("motion.{}", i);
       for (std::size_t j = 0; j < i; ++j)
         if (scene.motions[j].axis == motion.axis)
-          document.refuse(prefix + ".axis", fmt::format("has its motion already ({}). Give one [[motion]] to an axis.",
+          document.refuse(prefix + ".axis", fmt::format("already has a motion ({}). Give each axis one [[motion]].",
                                                         document.where(fmt::format("motion.{}", j))));
       if (motion.axis == Axis::z && scene.water.drainage == Drainage::undrained && scene.base.compliant())
         document.refuse(prefix + ".axis", "must not be z if water.drainage is \"undrained\" above a compliant base: at "
@@ -172,7 +172,7 @@ void check_grains(const SceneDocument &document, const ColumnScene &scene)
   if (!scene.has_grains())
     return;
   if (scene.analysis.kind == AnalysisKind::consolidation)
-    document.refuse("grains", "belongs to a dynamic analysis; a consolidation knows no packings. Give analysis.kind = "
+    document.refuse("grains", "belongs to a dynamic analysis; a consolidation has no packings. Give analysis.kind = "
                               "\"dynamic\", or layers another material.");
   if (scene.needs_common_library())
     check_packings(document, "grains", scene.grains);

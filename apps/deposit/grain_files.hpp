@@ -20,11 +20,11 @@ namespace isostat
 class GrainFiles
 {
 public:
-  /// On every rank.   @param resumed  null: start anew
+  /// On every rank.   @param resumed  null: start again
   GrainFiles(std::filesystem::path folder, const ColumnScene &scene, const SoilMaterial &soil,
              const FiniteElementSpace &space, const ColumnCheckpoint *resumed);
 
-  /// Starts or cuts the files.   Collective.   @param resumed  null: start anew   @throws RunFailure  on all ranks
+  /// Starts or cuts the files.   Collective.   @param resumed  null: start again   @throws RunFailure  on all ranks
   void open(const ColumnCheckpoint *resumed);
   /// Rows.   Collective; before the step that starts at `time`.   @throws RunFailure  on all ranks
   void record(std::uint64_t step, double time);

@@ -35,8 +35,8 @@ constexpr Key keys[] = {
            "contradicts the header is refused."},
   {.path = "baseline", .field = member<&ColumnMotion::baseline>, .value = "none", .choices = baseline_choices,
    .kinds = record,
-   .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that minimises the "
-           "drift of the displacement."},
+   .text = "What is subtracted from the accelerations: nothing, their mean, or the quadratic in time that minimises "
+           "the drift of the displacement."},
   {.path = "factor", .field = member<&ColumnMotion::factor>, .value = "1", .kinds = record, .group = "scale",
    .text = "Accelerations of the record are multiplied by this; excludes `peak`."},
   {.path = "peak", .field = member<&ColumnMotion::peak>, .unit = unit::m_s2, .presence = Presence::optional,
@@ -59,7 +59,7 @@ constexpr Key keys[] = {
   {.path = "interval", .field = member<&ColumnMotion::interval>, .unit = unit::s, .presence = Presence::optional,
    .value = "1 ms", .range = {Motion::shortest_interval, Motion::longest_interval},
    .reason = "because ground does not shake as fast or as slowly", .kinds = harmonic | ricker,
-   .text = "Time between samples, straight in between; left out: 1 / (500 frequency), and 1e-5 s at least."},
+   .text = "Time between samples, linear in between; left out: 1 / (500 frequency), and 1e-5 s at least."},
   {.path = "again", .field = member<&ColumnMotion::again>, .unit = unit::s, .presence = Presence::optional,
    .value = "20 s", .range = positive,
    .text = "Time from the start of the motion to its start for the second time; left out: it comes once."},

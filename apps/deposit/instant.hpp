@@ -16,7 +16,7 @@ struct ColumnInstant
   DynamicsEnergy energy;                                    ///< of the whole mesh, J
 };
 
-/// Makes one time step and tells the state at its start, t_n, all of it of that one instant. Dynamics holds quantities
+/// Makes one time step and returns the state at its start, t_n, all of it at that instant. Dynamics holds quantities
 /// of different instants after a step: displacement and stress (and from it the pressure of an undrained column) of
 /// t_n are those before the step; acceleration, pressure of u-p and energy of t_n are known after it; the velocity of
 /// t_n is the mean of those half a step before and after, at the start the given one. Collective.

@@ -10,7 +10,7 @@
 
 namespace isostat
 {
-/// What a point shows in tables: compression positive but for the shear pairs, which keep the sign they have in the
+/// What a point shows in tables: compression positive except for the shear pairs, which keep the sign they have in the
 /// soil (gamma_xz drives tau_xz).
 inline constexpr std::array<std::pair<const char *, const char *>, 9> point_columns = {{{"gamma_xz", "-"},
                                                                                         {"gamma_yz", "-"},

@@ -33,7 +33,7 @@ constexpr Key of_plate[] = {
   {.path = "rough", .field = member<&Plate::rough>, .value = "true",
    .text = "Whether the soil sticks to it; false: it slides freely."},
   {.path = "load_steps", .field = member<&Plate::steps>, .value = "100", .range = counts, .reason = one_or_more,
-   .text = "Equal steps of its way."},
+   .text = "Number of equal steps of the displacement."},
 };
 // clang-format on
 
@@ -63,16 +63,16 @@ void check_plate(const SceneDocument &document, const ColumnScene &scene)
   if (scene.analysis.kind != AnalysisKind::plate)
     return;
   if (scene.mesh.sides != Sides::walls)
-    document.refuse("mesh.sides", "must be \"walls\" beside a plate, which moves in a box. Give dimension = 2 and "
+    document.refuse("mesh.sides", "must be \"walls\" with a plate, which moves in a box. Give dimension = 2 and "
                                   "sides = \"walls\".");
   if (scene.mesh.distributed)
-    document.refuse("mesh.distributed", "must be false beside a plate.");
+    document.refuse("mesh.distributed", "must be false with a plate.");
   if (scene.water.drainage != Drainage::dry)
-    document.refuse("water.drainage", "must be \"dry\" beside a plate: it moves slowly, and no water is followed.");
+    document.refuse("water.drainage", "must be \"dry\" with a plate: it moves slowly, and no water is followed.");
   if (!scene.motions.empty())
-    document.refuse("motion", "has no effect beside a plate, which moves slowly. Remove [[motion]].");
+    document.refuse("motion", "has no effect with a plate, which moves slowly. Remove [[motion]].");
   if (scene.load.kind != LoadKind::none)
-    document.refuse("load.kind", "must be \"none\" beside a plate; a surcharge may be there.");
+    document.refuse("load.kind", "must be \"none\" with a plate; a surcharge may be there.");
   const Patch patch = plate_patch(scene);
   if (const double length = length_of_side(scene); !(patch.from < patch.to && patch.to <= length * (1 + 1e-9)))
     document.refuse(scene.plate.to ? "analysis.to" : "analysis.from",
@@ -87,7 +87,7 @@ void check_plate(const SceneDocument &document, const ColumnScene &scene)
                                     number_text(patch.from), number_text(patch.to),
                                     number_text(scene.mesh.width / scene.mesh.cells_across)));
   if (scene.plate.on == PlateSide::surface && !scene.mesh.ground_x.empty())
-    document.refuse("mesh.ground_x", "must be left out beside a plate on the surface, which has to be level there.");
+    document.refuse("mesh.ground_x", "must be left out with a plate on the surface, which has to be level there.");
   if (scene.plate.displacement == 0)
     document.refuse("analysis.displacement", "must not be 0 m, or nothing moves.");
   if (const double room = scene.plate.axis() == 2 ? scene.height() : scene.mesh.width;

@@ -49,7 +49,7 @@ SceneFragment<Plate> plate_keys();
 /// The part of the boundary that a plate has.
 Patch plate_patch(const ColumnScene &scene);
 
-/// Rules of a plate, and of what has no effect beside one.
+/// Rules of a plate, and of what has no effect with one.
 /// @throws InputError  no box; loads and motions; a plate out of its side   tested: tests/apps/deposit/box_test.cpp
 void check_plate(const SceneDocument &document, const ColumnScene &scene);
 } // namespace isostat

@@ -67,9 +67,9 @@ struct ColumnLayer : Layer
   LayerMaterial material = LayerMaterial::elastic;
   std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, of a formula
   double poisson_ratio = 0.3;                          ///< of the drained skeleton
-  IwanParameters iwan;                ///< of no meaning to other materials; its stiffness is the layer's, see sand()
+  IwanParameters iwan;                ///< ignored by other materials; its stiffness is the layer's, see sand()
   MohrCoulombParameters mohr_coulomb; ///< likewise, see frictional_soil()
-  SpecimenRequest grains;             ///< of no meaning to other materials
+  SpecimenRequest grains;             ///< ignored by other materials
   std::string table;                  ///< only in files: when a scene has been read, its rows have become layers
 
   bool from_formula() const { return shear_modulus || shear_velocity; }
@@ -178,7 +178,7 @@ struct ColumnOutput
 {
   std::string folder;             ///< default: results/<scene file name>
   double history_interval = 0.01; ///< between rows
-  std::vector<double> depths;     ///< below the surface; points with a history of their own, m
+  std::vector<double> depths;     ///< below the surface; points with their own history, m
   std::optional<double> x; ///< where these depths, and profiles, are; left out: the middle between walls, else 0, m
   std::optional<double> profile_interval, paraview_interval; ///< left out: none
   double checkpoint_minutes = 5;
@@ -208,10 +208,10 @@ struct ColumnScene
   Base base;
   std::vector<ColumnMotion> motions; ///< at most one per axis
   ColumnLoad load;
-  RveMaterialSettings grains; ///< as the scene says it; of no meaning without a layer of grains
+  RveMaterialSettings grains; ///< as the scene says it; ignored without a layer of grains
   GrainOutput grain_output;   ///< likewise
   ColumnAnalysis analysis;
-  Plate plate; ///< of no meaning to other kinds of analysis
+  Plate plate; ///< ignored by other kinds of analysis
   ColumnOutput output;
 
   double height() const; ///< that of soil_profile(), m
@@ -248,7 +248,7 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
 ColumnScene parse_column_scene(const std::string &text, const std::string &name,
                                const std::vector<std::string> &overrides = {});
 
-/// The scene as a complete TOML file: parse_column_scene(to_toml(s)) equals s to the bit for every s that was read. Not
+/// The scene as a complete TOML file: parse_column_scene(to_toml(s)) equals every s that was read, bit for bit. Not
 /// kept, because it has no effect: keys foreign to the kind of their table.
 std::string to_toml(const ColumnScene &scene);
 

@@ -40,9 +40,9 @@ constexpr Section sections[] = {
            "surface, and the soil carries a static shear stress from the start. In-situ stresses, safety, large "
            "displacements: docs/theory_column.md, section 8."},
   {.name = "layer",
-   .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that does "
-           "not belong to the material of its layer is an error. Exactly one of `cells` and `cell_size`, and, of elastic, "
-           "iwan and mohr_coulomb, exactly one of `shear_velocity` and `shear_modulus`, is to be given.",
+   .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that "
+           "does not belong to the material of its layer is an error. Give exactly one of `cells` and `cell_size`, "
+           "and, of elastic, iwan and mohr_coulomb, exactly one of `shear_velocity` and `shear_modulus`.",
    .kind_key = "material", .items = items_of<&ColumnScene::layers>, .needed = true,
    .empty_remedy = "Write [[layer]] with its thickness for each layer, from the surface downwards.",
    .default_kind = "elastic", .set_example = "thickness=\"2 m\"", .kinds_title = "Materials"},
@@ -55,8 +55,8 @@ constexpr Section sections[] = {
    .set_example = "amplitude=\"0.1 g\"", .kinds_title = "Motion kinds"},
   {.name = "load", .text = "Traction on the surface.", .kind_key = "kind", .kinds_title = "Load kinds"},
   {.name = "grains",
-   .text = "Packings of grains at the Gauss points of the layers whose material is \"grains\"; the element tests' own law "
-           "and rate control."},
+   .text = "Packings of grains at the Gauss points of the layers whose material is \"grains\", with the law and rate "
+           "control of the element tests."},
   {.name = "analysis",
    .text = "Waves (dynamic), the slow flow of water out of loaded soil without inertia (consolidation), or a plate that moves "
            "slowly into a box of soil (plate).",
@@ -95,13 +95,13 @@ constexpr Key water_keys[] = {
    .value = "2.2 GPa", .range = positive,
    .text = "Bulk modulus K_w of the water; air in it (`layer.saturation`) makes it softer."},
   {.path = "gravity", .field = member_of<ColumnWater, &ColumnWater::gravity>, .unit = unit::m_s2, .value = "9.81 m/s2",
-   .range = positive, .text = "Acceleration of gravity, of the soil's weight too."},
+   .range = positive, .text = "Acceleration of gravity, also for the weight of the soil."},
   {.path = "table", .field = member<&ColumnWater::table>, .unit = unit::m, .value = "0 m", .range = not_negative,
    .text = "Depth of the water table, on a boundary between elements; only where drainage is \"coupled\". Soil above "
-           "it has neither pore pressure nor buoyancy; its weight is the density of its layer, which counts its "
-           "moisture. Less than the height of the soil; 0 m in a box and on a submerged slope."},
+           "it has neither pore pressure nor buoyancy; its weight follows from the density of its layer, moisture "
+           "included. Less than the height of the soil; 0 m in a box and on a submerged slope."},
   {.path = "lagged_compressibility", .field = member<&ColumnWater::lagged_compressibility>, .value = "false",
-   .text = "Undrained only: the volume gives way by -dp/Q of the step before, as in water of finite stiffness. The "
+   .text = "Undrained only: the volume changes by -dp/Q of the previous step, as with water of finite stiffness. The "
            "fluid must be stiffer than the skeleton, K_f/n > M."},
 };
 
@@ -116,18 +116,19 @@ constexpr Key layer_keys[] = {
    .kinds = formula,
    .text = "A CSV file in place of thickness, shear_velocity and density: its rows, from the surface down, become "
            "layers that share all other keys of this one. Its first line names the columns `thickness (m)`, "
-           "`shear_velocity (m/s)` and `density (kg/m3)`, among others if need be; found as `motion.file` is."},
+           "`shear_velocity (m/s)` and `density (kg/m3)`; others are ignored. The path is like that of `motion.file`."},
   {.path = "cells", .field = member_of<ColumnLayer, &ColumnLayer::cells>, .presence = Presence::experiment,
    .value = "10", .range = counts, .reason = one_or_more, .group = "cells", .text = "Elements through the thickness."},
   {.path = "cell_size", .field = member_of<ColumnLayer, &ColumnLayer::cell_size>, .unit = unit::m,
    .presence = Presence::optional, .value = "0.5 m", .range = positive, .group = "cells",
-   .text = "Largest height of an element; the layer gets as few as keep it. At most 1000000 elements."},
+   .text = "Largest height of an element; the layer gets the fewest elements that respect it. At most 1000000 "
+           "elements."},
   {.path = "density", .field = member_of<ColumnLayer, &ColumnLayer::density>, .unit = unit::kg_m3,
    .value = "2000 kg/m3", .range = positive,
-   .text = "Density of soil and water together; above a water table with what moisture is there, of dry soil if there "
-           "is no water. Above that of the water where there is any."},
+   .text = "Density of soil and water together; above a water table with its moisture, without water that of dry "
+           "soil. Above that of the water where there is any."},
   {.path = "porosity", .field = member_of<ColumnLayer, &ColumnLayer::porosity>, .value = "0.4", .range = fraction,
-   .reason = "because soil has both grains and pores", .text = "Volume of pores over the whole."},
+   .reason = "because soil has both grains and pores", .text = "Pore volume over total volume."},
   {.path = "permeability", .field = member_of<ColumnLayer, &ColumnLayer::permeability>, .unit = unit::m_s,
    .presence = Presence::experiment, .value = "1e-5 m/s", .range = not_negative,
    .reason = "because water flows down the gradient",
@@ -137,19 +138,19 @@ constexpr Key layer_keys[] = {
    .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it."},
   {.path = "material", .field = member<&ColumnLayer::material>, .presence = Presence::required, .value = "elastic",
    .choices = material_names,
-   .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength "
-           "follow the mean effective stress, strength of friction and cohesion (Mohr-Coulomb), a packing of grains at "
-           "every Gauss point, see [grains], or one of the user's own, which isostat.column.run() in Python takes by "
-           "the name of the layer (docs/python.md), not with mesh.distributed."},
+   .text = "Law of the soil skeleton: linear elastic; parallel slip elements (Iwan) whose stiffness and strength "
+           "follow the mean effective stress; friction and cohesion (Mohr-Coulomb); a packing of grains at every "
+           "Gauss point, see [grains]; or the user's law, which isostat.column.run() in Python takes by the name of "
+           "the layer (docs/python.md), not with mesh.distributed."},
   {.path = "shear_velocity", .field = member<&ColumnLayer::shear_velocity>, .unit = unit::m_s,
    .presence = Presence::experiment, .value = "200 m/s", .range = {0.1, 1e5},
    .reason = "because waves in mud are as slow, and in rock not as fast", .kinds = formula, .group = "stiffness",
-   .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan and mohr_coulomb, at the reference "
+   .text = "Shear-wave velocity V_s at small strain: G = density V_s^2; for iwan and mohr_coulomb at the reference "
            "pressure."},
   {.path = "shear_modulus", .field = member<&ColumnLayer::shear_modulus>, .unit = unit::MPa,
    .presence = Presence::optional, .value = "80 MPa", .range = stresses, .reason = because_stresses, .kinds = formula,
    .group = "stiffness",
-   .text = "Shear modulus G of small strain. Of iwan and mohr_coulomb, at the reference pressure."},
+   .text = "Shear modulus G at small strain; for iwan and mohr_coulomb at the reference pressure."},
   {.path = "poisson_ratio", .field = member<&ColumnLayer::poisson_ratio>, .value = "0.3",
    .range = {0, 0.5, false, true},
    .reason = "because the skeleton does not widen when it is stretched, and is compressible without its water",
@@ -159,31 +160,29 @@ constexpr Key layer_keys[] = {
 constexpr Key own_sand_key[] = {
   {.path = "library", .field = member<&ColumnLayer::grains, &SpecimenRequest::library>, .presence = Presence::optional,
    .value = "gravel.h5", .kinds = grains,
-   .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one "
-           "is."},
+   .text = "Specimens of this layer's sand where it differs from that of `grains.library`; the path is like that one."},
 };
 
 constexpr Key base_keys[] = {
   {.path = "kind", .field = member<&Base::kind>, .value = "rigid", .choices = base_choices,
-   .text = "rigid: it has the given motion; compliant: elastic rock that takes waves away (Lysmer dashpot), the motion "
+   .text = "rigid: it has the given motion; compliant: elastic rock that absorbs waves (Lysmer dashpot); the motion "
            "is that of its outcrop."},
   {.path = "density", .field = member<&Base::density>, .unit = unit::kg_m3, .presence = Presence::required,
    .value = "2300 kg/m3", .range = positive, .kinds = compliant, .text = "Density of the rock."},
   {.path = "shear_velocity", .field = member<&Base::shear_velocity>, .unit = unit::m_s, .presence = Presence::required,
-   .value = "800 m/s", .range = positive, .kinds = compliant, .text = "Velocity of shear waves in the rock."},
+   .value = "800 m/s", .range = positive, .kinds = compliant, .text = "Shear-wave velocity in the rock."},
   {.path = "p_velocity", .field = member<&Base::p_velocity>, .unit = unit::m_s, .presence = Presence::optional,
    .value = "1600 m/s", .range = positive, .kinds = compliant,
-   .text = "Velocity of P waves in the rock; left out: twice the shear velocity. More than 1.155 times the shear "
-           "velocity."},
+   .text = "P-wave velocity in the rock; left out: twice the shear velocity. More than 1.155 times the shear velocity."},
 };
 
 constexpr Key load_keys[] = {
   {.path = "kind", .field = member<&ColumnLoad::kind>, .value = "none", .choices = load_choices,
-   .text = "How the traction runs in time."},
+   .text = "How the traction varies in time."},
   {.path = "surcharge", .field = member<&ColumnLoad::surcharge>, .unit = unit::kPa, .value = "0 kPa",
    .range = not_negative,
-   .text = "Vertical load on the unit of the surface, there from the start and part of the in-situ effective stress; "
-           "on a slope its part along x is carried by shear."},
+   .text = "Vertical load per unit of surface, present from the start as part of the in-situ effective stress; on a "
+           "slope its part along x is carried by shear."},
   {.path = "direction", .field = member<&ColumnLoad::direction>, .value = "z", .choices = load_axes, .kinds = loaded,
    .text = "Direction of the traction; along z compression is positive."},
   {.path = "amplitude", .field = member<&ColumnLoad::amplitude>, .unit = unit::kPa, .presence = Presence::required,
@@ -191,7 +190,7 @@ constexpr Key load_keys[] = {
   {.path = "frequency", .field = member<&ColumnLoad::frequency>, .unit = unit::Hz, .presence = Presence::required,
    .value = "1 Hz", .range = positive, .kinds = kind_bit(LoadKind::harmonic), .text = "Frequency of the sine."},
   {.path = "ramp", .field = member<&ColumnLoad::ramp>, .unit = unit::s, .value = "0 s", .range = not_negative,
-   .kinds = loaded, .text = "Time in which the traction rises smoothly from nothing."},
+   .kinds = loaded, .text = "Time in which the traction rises smoothly from zero."},
 };
 
 constexpr Key grain_output_keys[] = {
@@ -200,8 +199,8 @@ constexpr Key grain_output_keys[] = {
    .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`. Within the soil."},
   {.path = "path_depths", .field = member<&GrainOutput::path_depths>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"5 m\"]", .range = not_negative,
-   .text = "Depths at which the strain of every step and the stress after it are stored, for the program `rve_replay`, "
-           "which sends the packing the same way again, alone. Within the soil."},
+   .text = "Depths at which the strain of every step and the stress after it are stored, for the program "
+           "`rve_replay`, which strains the packing alone in the same way. Within the soil."},
   {.path = "snapshot_interval", .field = member<&GrainOutput::snapshot_interval>, .unit = unit::s, .value = "1 s",
    .range = positive, .text = "Time between them."},
 };
@@ -217,16 +216,16 @@ constexpr Key analysis_keys[] = {
    .text = "Time step, checked against the stable one; left out: `safety` times the stable one at the start."},
   {.path = "safety", .field = member<&ColumnAnalysis::safety>, .value = "0.8", .range = to_one,
    .reason = "because beyond the stable step the motion explodes", .kinds = dynamic,
-   .text = "Part of the stable time step that may be used."},
+   .text = "Fraction of the stable time step that is used."},
   {.path = "mass_damping", .field = member<&ColumnAnalysis::mass_damping>, .unit = unit::per_s, .value = "0 1/s",
    .range = not_negative, .kinds = dynamic,
    .text = "a_M: a force -a_M times mass and velocity; it damps frequency f by the fraction a_M / (4 pi f) of "
            "critical."},
   {.path = "highest_frequency", .field = member<&ColumnAnalysis::highest_frequency>, .unit = unit::Hz,
    .value = "25 Hz", .range = positive, .kinds = dynamic,
-   .text = "Highest frequency of interest. `viscosity` damps what vibrates faster; elements that are too long for its "
-           "wave, or for that of the motion if it has no such frequencies, are warned of; the summary tells how much "
-           "of the surface's acceleration lies above it."},
+   .text = "Highest frequency of interest. `viscosity` damps what vibrates faster. A warning names elements that are "
+           "too long for its wave, or for that of the motion if it has no such frequencies. The summary gives the "
+           "share of the surface's acceleration above it."},
   {.path = "viscosity", .field = member<&ColumnAnalysis::viscosity>, .unit = unit::ms, .value = "0.1 ms",
    .range = not_negative, .reason = "because a negative one would feed vibrations", .kinds = dynamic,
    .text = "Viscosity beta of the skeleton over its modulus, which acts above `highest_frequency` f_c: it damps "
@@ -235,14 +234,15 @@ constexpr Key analysis_keys[] = {
            "is as small as beta. 0 ms: none, and layers and elements ring on (docs/results/column_dissipation.md)."},
   {.path = "first_time", .field = member<&ColumnAnalysis::first_time>, .unit = unit::s, .presence = Presence::required,
    .value = "10 s", .range = positive, .kinds = consolidation,
-   .text = "End of the first time step after loading; those that follow rise geometrically. Elements where water "
-           "drains are cut to show it; where they cannot be, a warning states from when on results are right."},
+   .text = "End of the first time step after loading; later ones grow geometrically. Elements where water drains are "
+           "refined to resolve it; where they cannot be, a warning states from when on results are right."},
   {.path = "last_time", .field = member<&ColumnAnalysis::last_time>, .unit = unit::s, .presence = Presence::required,
    .value = "6 h", .range = positive, .kinds = consolidation, .text = "End of the last time step. After `first_time`."},
   {.path = "steps", .field = member<&ColumnAnalysis::steps>, .value = "50", .range = {2, 1e6},
    .reason = "because first_time and last_time end a step each, and a million is beyond any use",
    .kinds = consolidation,
-   .text = "Number of time steps, each with its row in the results; the solver divides them as accuracy needs."},
+   .text = "Number of time steps, each with its row in the results; the solver divides them where accuracy requires "
+           "it."},
 };
 
 constexpr Key output_keys[] = {
@@ -253,7 +253,7 @@ constexpr Key output_keys[] = {
    .text = "Time between rows of the histories, rounded to whole time steps; a consolidation writes every step."},
   {.path = "depths", .field = member<&ColumnOutput::depths>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
-   .text = "Depths below the surface whose stress paths and motions get histories of their own. Within the soil."},
+   .text = "Depths below the surface at which stress paths and motions are recorded. Within the soil."},
   {.path = "x", .field = member<&ColumnOutput::x>, .unit = unit::m, .presence = Presence::optional, .value = "10 m",
    .range = not_negative,
    .text = "Of a strip: x of the vertical along which histories, depths and profiles are; left out: the middle between "
@@ -284,15 +284,29 @@ constexpr const char *defaults_head =
 constexpr const char *manual_head =
 R"(# Scene reference of the soil column
 
-A scene is one TOML file that says all about a run of `soil_column`. This page is generated from the table in
-`apps/deposit/schema.cpp` (`column_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/column`.
+A scene is one TOML file that describes a run of `soil_column`. This page "
+ "is generated from the table in
+`apps/deposit/schema.cpp` (`column_scene_manual()`); a test compares them. Ready "
+ "scenes are in `apps/scenes/column`.
 
 - Quantities are text with a unit: `"10 m"`, `"200 m/s"`, `"1e-5 m/s"`, `"0.2 g"`. A bare number, or the
-  unit of something else, is an error. What has no dimension is a plain number.
-- Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
-- An unknown key is an error, and so is a key twice. Compression is positive; z points up, depths count downwards.
-- `--set key=value` on the command line overrides the file: `--set analysis.safety=0.5`,
-  `--set layer.0.thickness="4 m"` (the uppermost layer), `--set motion.0.peak="0.3 g"`. Of keys that exclude each
+  unit of "
+                                                                               "something else, is an error. What "
+                                                                               "has no dimension is a plain "
+                                                                               "number.
+- Numbers other than 0 are "
+                                                                               "between 1e-30 and 1e30 in size, in "
+                                                                               "SI units.
+- An unknown key is an "
+                                                                               "error, and so is a repeated key. "
+                                                                               "Compression is positive; z points "
+                                                                               "up, depths count downwards.
+- `--set "
+                                                                               "key=value` on the command line "
+                                                                               "overrides the file: `--set "
+                                                                               "analysis.safety=0.5`,
+  `--set "
+                                                                               "layer.0.thickness="4 m"` (the uppermost layer), `--set motion.0.peak="0.3 g"`. Of keys that exclude each
   other, the one set this way replaces the one in the file.
 
 )";

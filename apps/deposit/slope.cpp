@@ -25,11 +25,11 @@ double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 constexpr Key in_slope[] = {
   {.path = "angle", .field = member<&Slope::tangent>, .unit = unit::deg, .value = "0 deg", .range = {0, 60},
    .reason = "because x points down the slope, and no slope of soil is steeper than 60 deg",
-   .text = "Inclination of the surface to the horizontal. Less than the soil can bear; packings a friction of 60 deg "
-           "at most."},
+   .text = "Inclination of the surface to the horizontal. Less than the soil can bear; packings must not need more "
+           "than 60 deg of friction."},
   {.path = "water", .field = member<&Slope::water>, .value = "seepage", .choices = water_choices,
    .text = "Water that flows parallel to the surface, below a water table parallel to it, and drags the soil "
-           "downslope; or a slope submerged by water at rest. Of no meaning if there is no water."},
+           "downslope; or a slope submerged by water at rest. Ignored without water."},
 };
 // clang-format on
 
@@ -62,7 +62,7 @@ bool has_known_strength(const ColumnLayer &layer)
   return layer.material == LayerMaterial::iwan || layer.material == LayerMaterial::mohr_coulomb;
 }
 
-/// Static shear stress that Iwan sand bears beside the deviator of its K0: docs/theory_column.md (33); of a
+/// Static shear stress that Iwan sand bears in addition to the deviator of its K0: docs/theory_column.md (33); of a
 /// Mohr-Coulomb soil, before it softens, by its circle in the plane. Pa
 double shear_strength(const ColumnLayer &layer, const PlaneStress &stress)
 {
@@ -134,10 +134,10 @@ void check_table(const SceneDocument &document, const ColumnScene &scene)
   if (scene.water.drainage != Drainage::coupled)
     document.refuse("water.table",
                     fmt::format("has no meaning if water.drainage is \"{}\". Give drainage = \"coupled\" (with a "
-                                "permeability of 0 m/s if no water shall move), or remove it.",
+                                "permeability of 0 m/s if no water should move), or remove it.",
                                 drainage_names[static_cast<int>(scene.water.drainage)]));
   if (scene.slope.water == SlopeWater::submerged)
-    document.refuse("water.table", "must be 0 m if slope.water is \"submerged\": the water stands above the surface. "
+    document.refuse("water.table", "must be 0 m if slope.water is \"submerged\": the water is above the surface. "
                                    "Remove one of them.");
   if (table >= scene.height() - near)
     document.refuse("water.table", fmt::format("must be less than the height of the soil, {} m. Give drainage = "
@@ -181,9 +181,9 @@ void check_slope(const SceneDocument &document, const ColumnScene &scene)
         document.refuse(
             fmt::format("layer.{}.{}", k, key),
             fmt::format(
-                "is too low for the slope to stand: at a depth of {:.4g} m the static shear stress is {:.4g} kPa, "
-                "at a normal effective stress of {:.4g} kPa and with k0 = {}. Give a smaller slope.angle, a "
-                "larger {}, a k0 nearer to 1, or a deeper water.table.",
+                "is too low for a stable slope: at a depth of {:.4g} m the static shear stress is {:.4g} kPa, at a "
+                "normal effective stress of {:.4g} kPa and with k0 = {}. Give a smaller slope.angle, a larger {}, a "
+                "k0 nearer to 1, or a deeper water.table.",
                 depth, stress.shear / 1e3, stress.normal / 1e3, number_text(layer.k0), key));
       }
   });

@@ -17,7 +17,7 @@ struct SlopeSafety
 };
 
 /// The smallest factor of safety of the infinite slope at the stresses of its start, over all depths of the layers of
-/// iwan (of other materials no strength is known): the static shear stress that the sand bears at that p' beside the
+/// iwan (of other materials no strength is known): the static shear stress that the sand bears at that p' on top of the
 /// deviator of its k0, docs/theory_column.md (33), over the one there is; 1 where check_slope() begins to refuse. With
 /// k0 = 1, M = tan(phi) and dry soil it is tan(phi)/tan(angle). None on level ground, and without iwan.
 /// tested: tests/apps/deposit/slope_test.cpp
@@ -25,7 +25,7 @@ std::optional<SlopeSafety> slope_safety(const ColumnScene &scene);
 
 /// Rules of the slope and of the water table.
 /// @throws InputError  a table that is not on a boundary between elements or not in soil with coupled water; a layer of
-///                     iwan that cannot carry its static shear beside the deviator that k0 gives it; packings that
+///                     iwan that cannot carry its static shear on top of the deviator that k0 gives it; packings that
 ///                     would have to mobilise a friction angle of more than 60 deg: layer, depth
 /// tested: tests/apps/deposit/slope_test.cpp
 void check_slope(const SceneDocument &document, const ColumnScene &scene);

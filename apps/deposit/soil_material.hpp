@@ -43,7 +43,7 @@ struct SoilMaterial
   std::vector<std::vector<std::size_t>> seeds = {};
 };
 
-/// Materials of the user's own by the name of their layer: each call makes one for so many points.
+/// Materials of the user's own by the name of their layer: each call makes one for this many points.
 using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Material>(std::size_t n_points)>>;
 
 /// Materials of all layers for the points of this rank, a part for each layer from the base up, brought to their stress
@@ -55,7 +55,7 @@ using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Materi
 /// @throws RunFailure  stress not reached
 SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads, const UserMaterials &user);
 
-/// The lot of a point depends on its place alone, that of its block, or in micrometres: not on the numbering of the
+/// The draw of a point depends on its place alone, that of its block, or in micrometres: not on the numbering of the
 /// mesh, nor on ranks.   @param place  m
 SpecimenRequest drawn(SpecimenRequest request, const Place &place);
 

@@ -11,7 +11,7 @@
 //   element_test apps/scenes/quick_cyclic_liquefies.toml
 //   element_test apps/scenes/cyclic_dr64.toml --set motion.inertial_number=1e-4 --output results/slow
 //   element_test apps/scenes/cyclic_dr64.toml --resume
-//   element_test apps/scenes/cyclic_dr64.toml --resume --set stage.0.until.cycles=300    goes on, also after its end
+//   element_test apps/scenes/cyclic_dr64.toml --resume --set stage.0.until.cycles=300    continues, also after its end
 #include "apps/common/interrupt.hpp"
 #include "apps/common/run_output.hpp"
 #include "apps/common/test_run.hpp"
@@ -34,7 +34,7 @@ void run(const SceneOptions &options)
   const RunRequest<Scene> request(read_scene(options.scene, options.set), options);
   if (has_finished(request.folder, request.use, to_toml(request.scene), true))
     return tell_finished(request.folder, "element_test", !options.no_figures,
-                         " It goes on to a later end with --set, of stage.0.until.cycles say.");
+                         " It continues to a later end with --set, of stage.0.until.cycles say.");
   check_result_folder(request.folder, request.use);
   const StepSettings how{.measure_energy = request.scene.output.energy, .threads = request.threads};
   TestRun test =

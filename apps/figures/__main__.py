@@ -3,7 +3,7 @@
 
     python3 -m figures PROGRAM RESULTS [--out DIR] [--beside OTHER ...]        default DIR: RESULTS/figures
 
-What each program's figures show stands at the top of its module. The exit code is 2 if the folder cannot be drawn.
+The top of each program's module says what its figures show. The exit code is 2 if the folder cannot be drawn.
 """
 import importlib
 import pathlib

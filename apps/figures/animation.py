@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A run as a moving picture: packings with their contact forces, beside the stress path of a test or r_u of a column.
+"""A run as a moving picture: packings with their contact forces, next to the stress path of a test or r_u of a column.
 
     isostat animate RESULTS [-o FILE.gif | FILE.mp4] [--rate FRAMES_PER_SECOND]
 

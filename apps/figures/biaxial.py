@@ -170,7 +170,7 @@ def band_words(block, field):
 
 @draws("fig_band")
 def band(block):
-    """Axial stress beside that of other runs (named by their folders), shear strain at the end, where it came last,
+    """Axial stress next to that of other runs (named by their folders), shear strain at the end, where it came last,
     void ratio."""
     # all of a band; shear strains over their mean
     before, _, came = list(differences(block))[-1]

@@ -13,7 +13,7 @@ from .drawing import Drawing, draws
 from .files import read_parsed
 
 COLUMNS = 4  # curves side by side
-SHOWN = 3.0  # misfits beyond so many times the best have one colour
+SHOWN = 3.0  # misfits beyond this many times the best have one colour
 
 
 class Curve:

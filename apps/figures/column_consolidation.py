@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a consolidation: isochrones of the pore pressure and settlement, beside Terzaghi's series."""
+"""Figures of a consolidation: isochrones of the pore pressure and settlement, next to Terzaghi's series."""
 import numpy as np
 from matplotlib.colors import LogNorm
 
@@ -30,7 +30,7 @@ def chosen_rows(time, exact):
 
 @draws("fig_isochrones")
 def isochrones(column):
-    """Excess pore pressure over the depth, beside Terzaghi's series if it applies."""
+    """Excess pore pressure over the depth, next to Terzaghi's series if it applies."""
     pressure = column.profile("u")
     if not column.consolidation or pressure is None:
         return None
@@ -69,7 +69,7 @@ def report(what, differences, time, exact, unit):
 
 @draws("fig_settlement")
 def settlement(column):
-    """Settlement against time, beside Terzaghi's if it applies."""
+    """Settlement against time, next to Terzaghi's if it applies."""
     if not column.consolidation or not column.has("settlement"):
         return None
     after = column.time > 0

@@ -62,7 +62,7 @@ class Ensemble:
 
 
 def member_curve(folder, kind, name):
-    """The curve of one member, or nothing where its file is not there."""
+    """The curve of one member, or nothing where its file does not exist."""
     try:
         if kind in MEMBER_FILES:
             import h5py  # pylint: disable=import-outside-toplevel  (other figures do without)

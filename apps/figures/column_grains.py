@@ -59,7 +59,7 @@ def draw_onset(axes, depth, time, reached, **style):
 
 @draws("fig_grains_map")
 def grains_map(column):
-    """I_R over depth and time; beside it when each depth falls below I_R = 1 and exceeds r_u = 0.95."""
+    """I_R over depth and time; next to it when each depth falls below I_R = 1 and exceeds r_u = 0.95."""
     grains = column.grains.profiles
     if "IR" not in grains or len(grains["time"]) < 2:
         return None

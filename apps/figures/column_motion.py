@@ -168,7 +168,7 @@ def broad(column, axis):
     return strong.any() and f[strong][-1] > 4 * f[strong][0]
 
 
-@draws("fig_transfer", {"one elastic layer": "beside its exact curve, from which the largest difference is printed",
+@draws("fig_transfer", {"one elastic layer": "next to its exact curve, from which the largest difference is printed",
                         "other soil": "smoothed, too (Konno and Ohmachi 1998, b = 80)"})
 def transfer(column):
     """Fourier amplitudes, surface over input."""

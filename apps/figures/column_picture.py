@@ -58,7 +58,7 @@ def draw_motions(column, axes):
 
 
 def draw_map(column, figure, axes, depths, times):
-    """I_R, with the places and moments of the packings beside it."""
+    """I_R, with the places and moments of the packings next to it."""
     grains = column.grains.profiles
     x = edges(grains["time"], grains["time"][0], grains["time"][-1])
     y = edges(grains["depth"], 0, column.bottom(grains["depth"]))

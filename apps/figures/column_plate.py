@@ -11,7 +11,7 @@ def has_plate(column):
 
 @draws("fig_plate")
 def plate(column):
-    """Force against it and normal stress beside it over its way, shear strain at the end."""
+    """Force against it and normal stress next to it over its way, shear strain at the end."""
     if not has_plate(column) or not column.maps:
         return None
     figure, panels = plt.subplot_mosaic([["force", "pressure"], ["map", "map"]], figsize=(7.2, 5.6),
@@ -22,7 +22,7 @@ def plate(column):
     panels["force"].legend()
     panels["force"].set_ylabel("Force against the plate (kN/m)")
     panels["pressure"].plot(way, column.plate["pressure"] / 1e3, color=BLUE)
-    panels["pressure"].set_ylabel("Normal stress beside it (kPa)")
+    panels["pressure"].set_ylabel("Normal stress next to it (kPa)")
     for name in ("force", "pressure"):
         panels[name].set(xlabel="Way of the plate into the soil (mm)", ylim=(min(0, panels[name].get_ylim()[0]), None))
     mesh, maps = Mesh(column.maps), column.maps

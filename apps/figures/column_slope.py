@@ -16,8 +16,8 @@ def is_slope(column):
 
 @draws("fig_spreading")
 def spreading(column):
-    """Displacement of the surface in time; at the end displacement and shear strain over the depth, beside static shear
-    stress and normal effective stress of the start."""
+    """Displacement of the surface in time; at the end displacement and shear strain over the depth, next to static
+    shear stress and normal effective stress of the start."""
     if not is_slope(column):
         return None
     figure, panels = plt.subplot_mosaic([["time", "time", "time"], ["moved", "strain", "stress"]],

@@ -129,14 +129,14 @@ def profiles(column):
 
 @draws("fig_velocity")
 def velocity(column):
-    """Velocity of shear waves of small strain over the depth at the start, where it varies."""
+    """Shear-wave velocity of small strain over the depth at the start, where it varies."""
     speeds = column.profiles.get("shear_velocity") if column.profiles else None
     if speeds is None or np.ptp(speeds) < 1e-6 * speeds.max():
         return None
     figure, axes = plt.subplots(figsize=(5.2, 4.0), layout="constrained")
     depth = column.profiles["depth"]
     axes.plot(speeds, depth, color=BLACK, linewidth=1.0, marker=".", markersize=4 if len(depth) < 50 else 0)
-    axes.set(xlim=(0, None), xlabel="Velocity of shear waves at the start (m/s)", ylabel="Depth (m)")
+    axes.set(xlim=(0, None), xlabel="Shear-wave velocity at the start (m/s)", ylabel="Depth (m)")
     depth_axis(column, axes, depth)
     return figure
 
@@ -202,7 +202,7 @@ def ru_map(column):
 
 
 def moving_shears(column):
-    """Directions of the shear that some output depth feels, beside the strongest."""
+    """Directions of the shear that some output depth feels, next to the strongest."""
     largest = {axis: max((column.peak(f"{prefix}_tau_{axis}z") for _, prefix in column.points), default=0.0)
                for axis in "xy"}
     return [axis for axis in "xy" if largest[axis] > MIN_SHARE * max(largest.values())]

@@ -20,7 +20,7 @@ TURNS = 1.5  # path over range of the strain from which a test counts as turning
 MEDIAN_ROWS = 21
 UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "%": 1e-2}
 
-# Colours that colour-blind readers can tell apart (Okabe and Ito).
+# Colours that colour-blind readers can distinguish (Okabe and Ito).
 BLACK, ORANGE, BLUE, GREEN, RED, GREY = "#1a1a1a", "#e69f00", "#0072b2", "#009e73", "#d55e00", "#7f7f7f"
 
 STYLE = {
@@ -49,7 +49,7 @@ STYLE = {
 
 
 def use_style():
-    """Ours alone: a matplotlibrc of the user or, where Python started, of a stranger does not count."""
+    """Ours alone: a matplotlibrc of the user, or one where Python started, does not count."""
     plt.rcdefaults()
     plt.rcParams.update(STYLE)
 

@@ -44,7 +44,7 @@ class Drawing:
         return f"{text if text[1] == '_' else text[0].upper() + text[1:]}."
 
     def results(self, folder, beside=()):
-        """What is read from a results folder, with that of others beside it.   Raises BadInput"""
+        """What is read from a results folder, with that of others next to it.   Raises BadInput"""
         try:
             results = self.read(folder)
             results.beside = [self.read(other) for other in beside]

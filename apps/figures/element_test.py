@@ -72,7 +72,7 @@ def draw_pressure(run, axes):
 
 @draws("fig_redundancy")
 def redundancy(run):
-    """(a) redundancy index I_R of the contact law, in which 1 is isostatic, beside other counts, (b) p'/p0', of a test
+    """(a) redundancy index I_R of the contact law, in which 1 is isostatic, next to other counts, (b) p'/p0', of a test
     without a shear stage p'."""
     if not run.has("IR"):
         return None

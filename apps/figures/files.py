@@ -7,15 +7,15 @@ import json
 import os
 import re
 
-REMEDY = ("Restore it from a copy, or delete it and finish the run anew: its command is in provenance.txt, and "
-          "--resume goes on from a checkpoint.")
+REMEDY = ("Restore it from a copy, or delete it and finish the run again: its command is in provenance.txt, and "
+          "--resume continues from a checkpoint.")
 NOT_SHEARED = ("compress", "friction", "rebalance", "hold", "k0-compress", "repeat")  # kinds of stage
 NUMBERS = itertools.count()
 
 
 @contextlib.contextmanager
 def replacing(path):
-    """A path beside `path` that no other writer has; what is written there becomes `path` at the end, in one step."""
+    """A path next to `path` that no other writer has; what is written there becomes `path` at the end, in one step."""
     aside = path.with_name(f"{path.name}.{os.getpid()}-{next(NUMBERS)}.tmp")
     aside.unlink(missing_ok=True)
     try:

@@ -15,7 +15,7 @@ class Replay:
         summary = read_summary(folder / "summary.json")
         same = summary["equal"] == summary["increments"]
         self.title = f"Packing at {summary['depth']:.4g} m, alone" + (
-            ": the stress of the column to the bit" if same else
+            ": the stress of the column bit for bit" if same else
             f": {100 * summary['shear_error']:.2g} % off in shear stress, "
             f"{100 * summary['pressure_error']:.2g} % in p'")
 

@@ -54,7 +54,7 @@ std::vector<fs::path> snapshot_files(const fs::path &results)
 {
   std::error_code failure;
   if (!fs::exists(results, failure))
-    throw InputError(fmt::format("{}: is not there. {}.", results.string(), remedy));
+    throw InputError(fmt::format("{}: does not exist. {}.", results.string(), remedy));
   if (!fs::is_directory(results))
     return {results};
   const fs::path folder = results / "snapshots";
@@ -91,7 +91,7 @@ Snapshot with_contacts(const Snapshot &stored, const fs::path &path)
   return state;
 }
 
-/// Reads a stored snapshot, or the state of a specimen; the root attribute `format` tells them apart.
+/// Reads a stored snapshot, or the state of a specimen; the root attribute `format` distinguishes them.
 /// @throws InputError  missing, truncated or not HDF5; HDF5 of another program
 Snapshot read_stored_snapshot(const fs::path &path)
 {

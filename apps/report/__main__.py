@@ -24,7 +24,7 @@ except ModuleNotFoundError as missing:
 
 
 COMMANDS = {"leave": "Figures and report of results of a program", "compare": "Two runs side by side in one file",
-            "report": "The figures and report.html of results, once more"}
+            "report": "Draw figures and report.html of results again"}
 
 
 def parse(command, words):
@@ -34,7 +34,7 @@ def parse(command, words):
         line.add_argument("first", type=pathlib.Path, help="results folder of a finished run")
         line.add_argument("second", type=pathlib.Path, help="results folder of another one of the same program")
         line.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("compare.html"),
-                          help="file that is written; a page that is there is replaced (default: compare.html)")
+                          help="output file; an existing page is replaced (default: compare.html)")
         return line.parse_args(words)
     if command == "leave":
         line.add_argument("program", choices=NUMBERS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How to cite Isostat, from the CITATION.cff beside it: in the source tree or among the installed documents."""
+"""How to cite Isostat, from the CITATION.cff next to it: in the source tree or among the installed documents."""
 import pathlib
 import re
 

@@ -64,8 +64,8 @@ def check(pair):
     """Both finished, and of one kind.   Raises NoResults"""
     for results in pair:
         if results.numbers is None:
-            raise NoResults(f"{results.path}: is not finished, because {NUMBERS[results.program]} is not there yet. "
-                            "Wait for the run, or go on with it by its command and --resume.")
+            raise NoResults(f"{results.path}: is not finished, because {NUMBERS[results.program]} does not exist yet. "
+                            "Wait for the run, or continue with it by its command and --resume.")
     one, other = pair
     if one.program != other.program:
         raise NoResults(f"{one.path} is of {one.program}, {other.path} of {other.program}: they have nothing to "
@@ -121,7 +121,7 @@ def page(pair):
             html.section("Scene", difference_table(key_rows(one.scene, other.scene), "key",
                                                    "Every key of the scenes is the same.", "keys that differ"),
                          name="scene"),
-            html.section("Provenance", difference_table(provenance, "", "Version and start stand above; the rest is "
+            html.section("Provenance", difference_table(provenance, "", "Version and start are above; the rest is "
                                                         "the same.", "what differs in provenance"), name="provenance"),
         ])
 
@@ -133,7 +133,7 @@ def leave(first, second, output):
     if output.is_dir() or not output.absolute().parent.is_dir():
         raise NoResults(f"{output}: cannot be written. Give a file in a folder that exists with --output.")
     if output.exists() and not (output.is_file() and html.GENERATOR.encode() in output.read_bytes()[:1000]):
-        raise NoResults(f"{output}: is there, and no page of Isostat. Give another --output, or move it away.")
+        raise NoResults(f"{output}: exists and is not a page of Isostat. Give another --output, or move it away.")
     text = page(pair)
     try:
         html.write_replacing(output, text)

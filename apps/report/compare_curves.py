@@ -96,7 +96,7 @@ def caption_of_test(pair):
 
 def numbers_of_test(run):
     """Peak and ends of the curves. q (tau) is signed; its peak is where its amount is largest. Which end of a cycle
-    that is hangs on an overshoot: of cyclic tests both are given."""
+    that is depends on an overshoot: of cyclic tests both are given."""
     name = "tau_xy" if run.shear else "q"
     load, strain, p = run[name] / 1e3, 100 * run.strain, run["p"] / 1e3
     peak = int(np.nanargmax(np.abs(load)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the files of an element test tell of it: by what each stage ended, liquefaction, rate, density, reversals."""
+"""What the files of an element test show: by what each stage ended, liquefaction, rate, density, reversals."""
 import re
 
 import numpy as np
@@ -67,7 +67,7 @@ def rate(results):
         return
     text, kind = driven
     if eta is None:
-        older = "" if "rows" in results.numbers else " How fast that is, this older run says in its summary alone."
+        older = "" if "rows" in results.numbers else " Only the summary of this older run gives the rate."
         yield "Rate:", text + older, "plain"
         return
     fast = []
@@ -89,7 +89,7 @@ def tolerances(results):
     asked, reached = specimen.get("relative_density"), numbers.get("relative_density")
     if asked is not None and reached is not None and "density_tolerance" in specimen:
         held = abs(reached - asked) <= specimen["density_tolerance"]
-        yield "Density:", (f"D_r = {reached:.3f}, asked for {asked:g}; the tolerance of "
+        yield "Density:", (f"D_r = {reached:.3f}, requested {asked:g}; the tolerance of "
                            f"{specimen['density_tolerance']:g} {'held' if held else 'did not hold'}."), (
                                "good" if held else "attention")
     amplitudes = [quantity(stage["deviator_amplitude"]) for stage in results.scene.get("stage", [])

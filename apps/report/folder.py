@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a results folder holds beside its tables: program, scene, summary, provenance."""
+"""What a results folder holds besides its tables: program, scene, summary, provenance."""
 import re
 import tomllib
 
@@ -20,7 +20,7 @@ class NoResults(Exception):
 
 
 def text_of(path):
-    """The text of a file, or nothing if it is not there."""
+    """The text of a file, or nothing if it does not exist."""
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -50,7 +50,7 @@ class Results:
         self.numbers = self._table(NUMBERS[program])
 
     def _table(self, name, *parse):
-        """The table in a file of the folder, or None if it is not there.   Raises NoResults"""
+        """The table in a file of the folder, or None if it does not exist.   Raises NoResults"""
         try:
             return read_parsed(self.path / name, *parse)
         except OSError:

@@ -61,7 +61,7 @@ def table(head, rows, label, numbers=()):
 
 
 def figure(name, title, caption, drawn):
-    """A drawn figure of matplotlib that can be zoomed, with its caption. Panels side by side stand below each other
+    """A drawn figure of matplotlib that can be zoomed, with its caption. Panels side by side come below each other
     in a narrow window: the page has both."""
     label = f'role="img" tabindex="0" aria-label="{escape(title + ": " + caption)}"'
     element, width = svg.element(drawn, name)
@@ -76,7 +76,7 @@ def figure(name, title, caption, drawn):
 
 
 def figures(parts):
-    """Figures beside each other where there is room."""
+    """Figures next to each other where there is room."""
     return paragraph(HINT, "hint") + '\n<div class="figures">\n' + "\n".join(parts) + "\n</div>" if parts else ""
 
 
@@ -91,7 +91,7 @@ def page(title, subtitle, sections):
 
 
 def write_replacing(path, text):
-    """Writes beside it, brings that to the disk and renames: a reader sees the old content or the new."""
+    """Writes next to it, brings that to the disk and renames: a reader sees the old content or the new."""
     with replacing(path) as aside, open(aside, "x", encoding="utf-8") as file:
         file.write(text)
         file.flush()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures for narrow windows: panels that stand side by side come below each other, so that their labels stay readable.
+"""Figures for narrow windows: panels side by side come below each other, so that their labels stay readable.
 
 tested: tests/apps/report_test.py"""
 import math
@@ -28,7 +28,7 @@ def side_by_side(figure):
 
 
 def stack_legend(figure, legend):
-    """The legend of the figure in as many columns as fit. Returns the layout's rectangle beside it."""
+    """The legend of the figure in as many columns as fit. Returns the layout's rectangle next to it."""
     # the handles have another name before matplotlib 3.7
     handles = legend.legend_handles if hasattr(legend, "legend_handles") else legend.legendHandles
     labels = [text.get_text() for text in legend.get_texts()]
@@ -42,7 +42,7 @@ def stack_legend(figure, legend):
 
 
 def stack(figure):
-    """Lays out a figure anew that has been drawn, its panels below each other, row by row."""
+    """Lays out a figure again that has been drawn, its panels below each other, row by row."""
     panels = panels_of(figure)
     grid = panels[0].get_subplotspec().get_gridspec()
     rows = [panels[k:k + grid.ncols] for k in range(0, len(panels), grid.ncols)]

@@ -46,7 +46,7 @@ SHOWN = {
         "rejected": "-", "rve_steps": "-", "nonlocal_length_m": "m", "pore_pressure_Pa": "Pa",
         "nonlocal_stiffness": "-"},
 }
-IN_SI = ("_deg", "_m", "_Pa")  # ends of names that tell the unit in the file
+IN_SI = ("_deg", "_m", "_Pa")  # ends of names that give the unit in the file
 
 
 def is_number(value):

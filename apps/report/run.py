@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report of a run: verdicts, summary, figures, scene, provenance, how to go on and how to cite, on one page."""
+"""The report of a run: verdicts, summary, figures, scene, provenance, how to continue and how to cite, on one page."""
 import importlib
 import json
 import re
@@ -12,8 +12,8 @@ from .folder import IN_PYTHON, NoResults, Results
 from .quantities import converted, named, shown
 
 REPORT = "report.html"
-KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command goes on with what is missing
-RESUMED = ("element_test", "soil_column")  # --resume goes on from a checkpoint
+KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command continues with what is missing
+RESUMED = ("element_test", "soil_column")  # --resume continues from a checkpoint
 
 
 def title_of(name):
@@ -35,7 +35,7 @@ def summary_parts(results):
 
 
 def calls(results):
-    """How to go on with the run, and how to run its scene again: as it was started, from a shell or from Python."""
+    """How to continue with the run, and how to run its scene again: as it was started, from a shell or from Python."""
     function = results.command.split()[0]
     if function not in IN_PYTHON:
         command = results.command.replace(" --overwrite", "")
@@ -46,14 +46,14 @@ def calls(results):
 
 
 def resume_parts(results):
-    """How to go on and how to repeat the run, as far as its files tell."""
+    """How to continue and how to repeat the run, as far as its files show."""
     program, command = results.program, results.command.replace(" --overwrite", "")
     parts = []
     if not command:
         return parts
     resumed, again = calls(results)
     if program in KEPT:
-        parts += [html.paragraph("What has been computed is kept. The same command goes on with what is missing:"),
+        parts += [html.paragraph("What has been computed is kept. The same command continues with what is missing:"),
                   html.text_block(command, "command")]
     elif program in RESUMED and results.has_checkpoint:
         ended = "" if results.numbers is None else " The run has ended; this repeats what came after that checkpoint."

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A figure of matplotlib as SVG to stand in a page: small, with ids of its own, without links to anything outside."""
+"""A figure of matplotlib as SVG for a page: small, with its own ids, without links to anything outside."""
 import io
 import itertools
 import re
@@ -60,7 +60,7 @@ def height_of_title(figure):
 def element(figure, prefix):
     """The element <svg> of a figure that has been drawn, and its width in points. Every id begins with `prefix`.
 
-    The figure keeps its layout but for its title, which stands in the page. Lines are simplified as in the image;
+    The figure keeps its layout except for its title, which is in the page. Lines are simplified as in the image;
     meshes, and what has too many parts, become images within the SVG.
     """
     top = height_of_title(figure)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What can be told of a run from its files: how it ended, whether it liquefied, what held. Nothing is concluded that
+"""What the files of a run show: how it ended, whether it liquefied, what held. Nothing is concluded that
 the files do not say; where they are silent, there is no line."""
 import dataclasses
 
@@ -60,8 +60,8 @@ def biaxial(results, _block):
 def rve_replay(results, _replay):
     s = results.numbers
     if s["equal"] == s["increments"]:
-        return [Verdict("Same:", f"the stress of the column to the bit in all {s['increments']} increments.", GOOD)]
-    return [Verdict("Different:", f"the stress of the column to the bit in {s['equal']} of {s['increments']} "
+        return [Verdict("Same:", f"the stress of the column bit for bit in all {s['increments']} increments.", GOOD)]
+    return [Verdict("Different:", f"the stress of the column bit for bit in {s['equal']} of {s['increments']} "
                     f"increments; rms difference {100 * s['shear_error']:.3g} % of tau.")]
 
 

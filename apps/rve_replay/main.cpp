@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // rve_replay RECORD: sends the packing of one depth of a shaken column the same way again, alone: undrained (or
-// drained) shear driven by the strain history that the finite elements gave it. The stress is that of the column to the
-// bit; with other rates, it is seen what those of the column cost in accuracy.
+// drained) shear driven by the strain history that the finite elements gave it. The stress is that of the column, bit
+// for bit; other rates show what those of the column cost in accuracy.
 //
 //   results/COLUMN/paths/d0/packing.h5        -> RECORD/replay/history.csv         strain, stress then and now
 //                           history.h5                         grain_history/      I_R, Z, fabric ...
@@ -44,7 +44,7 @@ struct Options
 /// How the stress of the packing alone compares with what the finite elements were given.
 struct ReplayResult
 {
-  std::size_t increments = 0, equal = 0;       ///< all of them; those after which all six stresses are equal to the bit
+  std::size_t increments = 0, equal = 0;       ///< all of them; those after which all six stresses have equal bits
   std::uint64_t steps = 0;                     ///< time steps of the packing
   double shear_error = 0, pressure_error = 0;  ///< rms of the difference of tau_xz and p' over that of the record [-]
   double largest_error = 0;                    ///< |stress difference| / p0' [-] ...
@@ -180,7 +180,7 @@ Summary report_of(const ReplayResult &r, const StrainRecord &record, const Optio
     summary.row("smallest I_R", "{:.4g} of rows; {}", Value{"min_redundancy", *r.min_redundancy},
                 index_name(r.constraints));
   const bool same = r.equal == r.increments;
-  summary.row("stress", "that of the column to the bit after {} increments",
+  summary.row("stress", "that of the column bit for bit after {} increments",
               same ? fmt::format("all {}", r.equal) : fmt::format("{} of {}", r.equal, r.increments));
   const std::string rms =
       summary.text("{:.3g} % of tau, {:.3g} % of the change of p'", Value{"shear_error", r.shear_error, percent},
@@ -228,7 +228,7 @@ void run(const Options &options)
 
 int main(int argc, char **argv)
 {
-  CLI::App line("The packing of one depth of a column, sent the same way again, alone");
+  CLI::App line("The packing at one depth of a column, strained alone in the same way");
   Options options;
   line.add_option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run")->required();
   line.add_option("-o,--output", options.output, "results folder (default: RECORD/replay)");
@@ -240,9 +240,9 @@ int main(int argc, char **argv)
   line.add_option("--every", options.every, "increments between two rows of micromechanics")
       ->check(CLI::Range(1, 1000000000))
       ->capture_default_str();
-  line.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  line.add_flag("--overwrite", options.overwrite, "replace existing results");
   line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
-  line.add_flag("--no-figures", options.no_figures, "leave no figures and no report at the end");
+  line.add_flag("--no-figures", options.no_figures, "make no figures and no report at the end");
   options.command_line = command_text(argc, argv);
   return run_command(line, argc, argv, [&] {
     catch_signals();

@@ -92,7 +92,7 @@ protected:
   virtual void start() = 0;
   virtual bool is_done() const = 0;
   virtual double n_total() const = 0; ///< steps
-  /// What a line of progress tells besides how far the run is.
+  /// What a line of progress says besides how far the run is.
   virtual std::string key_state()
   {
     const ColumnState &now = files_.history().state;
@@ -136,7 +136,7 @@ protected:
   FileLock folder_; ///< of the results, on the first rank
   ColumnFiles<dim> files_;
   PeakFollower<dim> follower_;
-  std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts anew
+  std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts again
   std::vector<double> velocities_;            ///< of shear waves at every point at the start of the whole run, m/s
   std::optional<Spreading> spreading_;        ///< of a slope, at the end
   std::optional<BoxMotion> box_motion_;       ///< of a box, at the end
@@ -226,7 +226,7 @@ private:
   [[noreturn]] void stop()
   {
     save();
-    throw Interrupted(fmt::format("interrupted at step {}; go on with --resume", run_.n_steps()));
+    throw Interrupted(fmt::format("interrupted at step {}; continue with --resume", run_.n_steps()));
   }
 
   /// Brings all files up to date, then writes a checkpoint.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Consolidation of a column: the load goes on in an instant, then the water leaves.
+// Consolidation of a column: the load comes in an instant, then the water leaves.
 #include "apps/soil_column/statics_run.hpp"
 
 #include <limits>
@@ -56,7 +56,7 @@ private:
   {
     this->progress_.say(fmt::format("{} steps from {:.5g} s to {:.5g} s{}", ends_.size(), ends_.front(), ends_.back(),
                                     resumed_ ? fmt::format(", from {:.5g} s on", run_.time()) : ""));
-    if (!resumed_ && !at_once_) // the step of a load at once has a row of its own
+    if (!resumed_ && !at_once_) // the step of a load at once has its own row
       record();
   }
 
@@ -75,7 +75,7 @@ private:
       immediate_settlement_ = files_.history().state.settlement;
   }
 
-  /// Steps of the time table that are done; a load that is there at once takes a step of its own.
+  /// Steps of the time table that are done; a load that comes at once takes its own step.
   std::size_t n_done() const { return static_cast<std::size_t>(run_.n_steps()) - (at_once_ ? 1 : 0); }
   bool is_done() const override { return run_.n_steps() > 0 && n_done() >= ends_.size(); }
   double n_total() const override { return static_cast<double>(ends_.size()) + 1; }

@@ -73,7 +73,7 @@ private:
     soil_.material->seconds = 0;
   }
 
-  /// Every so many whole steps.
+  /// Every n whole steps.
   bool due(const std::optional<double> &interval) const
   {
     return interval && run_.n_steps() % this->steps_in(*interval) == 0;
@@ -167,7 +167,7 @@ private:
     if (!(n <= this->most_steps))
       throw InputError(fmt::format(
           "analysis.duration = {:g} s: must be at most {:g} s, because the time step is {:g} s "
-          "and there is no counting of more than {:g} of them.",
+          "and more than {:g} of them cannot be counted.",
           scene_.analysis.duration, this->most_steps * run_.time_step(), run_.time_step(), this->most_steps));
     return static_cast<std::uint64_t>(n);
   }

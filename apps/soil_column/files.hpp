@@ -10,7 +10,7 @@
 
 namespace isostat
 {
-/// What a run of a column leaves in its folder while it goes on: history, profiles, files for ParaView, checkpoints.
+/// What a run of a column leaves in its folder while it continues: history, profiles, files for ParaView, checkpoints.
 /// Never changes the run. Only a rank that calls open() touches the disk.
 /// tested: tests/apps/soil_column_test.py
 template <int dim>
@@ -21,7 +21,7 @@ public:
   ColumnFiles(std::filesystem::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
               const std::array<Motion, 3> &motions, std::size_t stride);
   /// Starts or cuts the files, on the rank that writes.
-  /// @param velocities  of shear waves at every point at the start of the run, m/s   @param resumed  null: start anew
+  /// @param velocities  V_s at every point at the start of the run, m/s   @param resumed  null: start again
   /// @throws InputError  files that have been cut off or changed since the checkpoint
   void open(const std::vector<double> &velocities, const ColumnCheckpoint *resumed);
 
@@ -36,7 +36,7 @@ public:
   /// Brings all files up to date, then writes a checkpoint with what belongs to them and the peaks.
   void save(ColumnCheckpoint checkpoint, const ColumnPeaks &peaks);
   void flush();
-  /// Adds the largest values to the profiles, and what is left of a slope.   @pre the last call
+  /// Adds the largest values to the profiles, and the end state of a slope.   @pre the last call
   void finish(const ColumnPeaks &peaks, const std::optional<Spreading> &spreading);
 
   const ColumnLine *line() const { return line_ ? &*line_ : nullptr; } ///< null: a distributed mesh

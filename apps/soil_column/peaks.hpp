@@ -9,7 +9,7 @@ namespace isostat
 /// The largest value of all ranks, and what belongs to it: the smallest, if several ranks have it.   Collective.
 void take_max(double &value, std::initializer_list<double *> with, MPI_Comm communicator);
 
-/// Largest values of a run, looked at in every step, not only in those that are recorded.
+/// Largest values of a run, evaluated in every step, not only in those that are recorded.
 struct ColumnPeaks
 {
   double input = 0, surface = 0;            ///< horizontal acceleration by size, m/s2

@@ -49,7 +49,7 @@ PlateForces::PlateForces(const ColumnScene &scene, const FiniteElementSpace &spa
   find_start(scene, stresses);
 }
 
-/// Internal forces less weight and surcharge of the soil beside it that act on nodes of the plate.
+/// Internal forces less weight and surcharge of the soil next to it that act on nodes of the plate.
 void PlateForces::find_start(const ColumnScene &scene, std::span<const Stress> stresses)
 {
   Vector force = space_.displacement_vector();

@@ -47,8 +47,8 @@ public:
   const std::array<double, 3> &start() const { return start_; }
   void set_start(const std::array<double, 3> &start) { start_ = start; }
   /// The force normal to the plate (compression positive), and that of the plate on the soil along it, towards +x or
-  /// +z: those in situ and what has come since. Nodes at its ends carry a part of the soil beside it: of a trapdoor,
-  /// that of an abutment; pressure() has no part in it. N/m
+  /// +z: those in situ and what has come since. Nodes at its ends carry a part of the soil next to it: of a trapdoor,
+  /// that of an abutment; pressure() leaves it out. N/m
   std::array<double, 2> forces(const Statics &run) const;
   /// Mean stress normal to the plate at the row of points next to it, compression positive, Pa.
   double pressure(std::span<const Stress> stresses) const;

@@ -94,7 +94,7 @@ std::vector<std::string> motion_warnings(const ColumnScene &scene, const std::ar
       const double end = end_of_shaking(motion);
       if (end > scene.analysis.duration + motion.interval())
         warnings.push_back(fmt::format("the analysis ends at {:.4g} s, before the motion along {}, which lasts until "
-                                       "{:.4g} s. Set analysis.duration to that or more to have it all.",
+                                       "{:.4g} s. Set analysis.duration to that or more to include all of it.",
                                        scene.analysis.duration, axis, end));
       if (drifts(motion))
         warnings.push_back(fmt::format(

@@ -19,11 +19,11 @@ struct RunResult
 };
 
 /// Runs a scene to its end and leaves all files but summary.txt and figures.   Collective over MPI_COMM_WORLD.
-/// @throws InputError  before anything that is there is changed   @throws RunFailure  with step, time and checkpoint
+/// @throws InputError  before anything existing is changed   @throws RunFailure  with step, time and checkpoint
 /// @throws Interrupted  after a signal, with a checkpoint
 /// tested: tests/apps/soil_column_test.py
 RunResult run_column(const ColumnRequest &request);
-/// The parts of it: one kind of analysis in so many dimensions, with neither times.json nor summary.json.
+/// The parts of it: one kind of analysis in this many dimensions, with neither times.json nor summary.json.
 template <int dim>
 RunResult run_dynamic(const ColumnRequest &request);
 template <int dim>

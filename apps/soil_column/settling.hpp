@@ -10,8 +10,8 @@ namespace isostat
 /// Brings the soil of a box from its K0 stress into equilibrium with its weight (buoyant under water) and the
 /// surcharge, drained, in ten steps: docs/theory_column.md, section 9. Packings by relaxation to a residual of 0.5 % of
 /// the force scale, formulas by Newton's method to 1e-6 where it converges, else by relaxation. Displacements are
-/// forgotten, what the material has undergone is not. A plate on the surface is not there yet, one in the base or a
-/// wall is a part of these: the soil does not hang on it.   Collective.
+/// forgotten, what the material has undergone is not. A plate on the surface does not exist yet, one in the base or a
+/// wall is a part of these: the soil does not depend on it.   Collective.
 /// @param mesh  of the material's points
 /// @param after_step  called after each step with a line on it; what it throws goes through
 /// @return the largest displacement, m

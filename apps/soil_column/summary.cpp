@@ -18,7 +18,7 @@ namespace
 {
 bool shaken(const ColumnScene &scene) { return scene.analysis.kind == AnalysisKind::dynamic; }
 
-/// r_u compares with the stress in situ, which the load of a consolidation has no part in.
+/// r_u compares with the stress in situ, without the load of a consolidation.
 bool has_ru(const ColumnScene &scene) { return shaken(scene) && scene.water.drainage != Drainage::dry; }
 
 /// What a peak of horizontal acceleration is, if two axes move.
@@ -208,7 +208,7 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
     add_grains(*s.grains, summary);
   summary["depths"] = s.point_depths;
   if (!s.point_depths.empty())
-    summary.row("depths of histories", "{} m, the points nearest to those asked for",
+    summary.row("depths of histories", "{} m, the points nearest to those requested",
                 fmt::format("{:.4g}", fmt::join(s.point_depths, ", ")));
   summary["warnings"] = s.warnings;
   for (const std::string &warning : s.warnings)

@@ -17,7 +17,7 @@ struct MotionBands
   double share = 0, input_share = 0; ///< of the squared acceleration of surface and input, above it [-]
 };
 
-/// What every step of a run tells of the surface's acceleration, which rows of the history, further apart and filtered,
+/// What every step of a run shows of the surface's acceleration, which rows of the history, further apart and filtered,
 /// do not: response spectra, and how much of it is too fast to be of interest.
 /// tested: tests/apps/column_motion_test.py, tests/apps/soil_column_resume_test.py
 class SurfaceMotion

@@ -248,7 +248,7 @@ int main(int argc, char **argv)
   line.add_option("-o,--output", options.output, "results folder (default: results/<scene name>)");
   line.add_option("--set", options.set, "override a key, e.g. --set grading.seed=2 (repeatable)");
   line.add_option("--fall", options.pluviation.fall, "stretch of the cloud from which grains fall, >= 1 (default 1)");
-  line.add_flag("--overwrite", options.overwrite, "replace results that are there");
+  line.add_flag("--overwrite", options.overwrite, "replace existing results");
   line.add_flag("-q,--quiet", options.quiet, "no progress on stderr");
   options.command_line = command_text(argc, argv);
   return run_command(line, argc, argv, [&] { find_limits(options); });

@@ -15,7 +15,7 @@
 namespace isostat
 {
 /// Appends values, texts and rows of numbers to a row of bytes, in the machine's own representation: what travels
-/// between ranks and into checkpoints, the state of materials and packings. A row or text stands behind its length.
+/// between ranks and into checkpoints, the state of materials and packings. A row or text comes after its length.
 /// Tested: tests/base/files/bytes_test.cpp.
 class ByteWriter
 {

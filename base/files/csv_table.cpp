@@ -76,8 +76,8 @@ std::string read_text(const fs::path &path)
   if (code == Z_MEM_ERROR)
     throw std::bad_alloc();
   if (!reason.empty())
-    throw InputError(fmt::format("{}: cannot be read: {}; check the disk, and copy the file again if that goes on",
-                                 path.string(), reason));
+    throw InputError(
+        fmt::format("{}: cannot be read: {}; check the disk, or copy the file again", path.string(), reason));
   if (n < 0 || closed != Z_OK || (code != Z_OK && code != Z_STREAM_END))
     throw InputError(fmt::format("{}: the gzip data are damaged or cut off after {} bytes of text; copy the file again",
                                  path.string(), text.size()));

@@ -50,14 +50,14 @@ class CsvTable
 {
 public:
   /// Reads the whole file, plain or gzipped.
-  /// @param columns  names, in the order in which they are asked for; they may stand anywhere, others are ignored
+  /// @param columns  names, in the order in which they are asked for; they may be anywhere, others are ignored
   /// @param may_be_nan  the one column whose values may be nan
   CsvTable(const std::filesystem::path &path, const std::vector<std::string> &columns,
            const std::string &may_be_nan = "");
 
   const std::filesystem::path &path() const { return path_; }
   std::size_t n_rows() const { return lines_.size(); }
-  /// Line of the file in which a row stands, counted from 1.
+  /// Line of the file of a row, counted from 1.
   std::size_t line(std::size_t row) const { return lines_[row]; }
   double operator()(std::size_t row, std::size_t column) const { return values_[row * n_columns_ + column]; }
   /// Three columns that follow each other.

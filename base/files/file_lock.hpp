@@ -30,9 +30,9 @@ public:
   }
   ~FileLock();
 
-  /// The lock, or none if another holder has it; a file that is not there is made. Children that become another
+  /// The lock, or none if another holder has it; a file that does not exist is made. Children that become another
   /// program do not inherit it.   @throws RunFailure  the file cannot be opened for writing, or made
-  /// @throws NoLocks  nobody can lock it
+  /// @throws NoLocks  the file system has no locks
   static FileLock attempt(const std::filesystem::path &file);
 
   explicit operator bool() const { return file_ >= 0; }

@@ -86,7 +86,7 @@ private:
 
 /// An open HDF5 file; closed when it and its groups are gone.
 ///
-/// What is written stays in memory; commit() brings it to the disk beside `path` and renames it to `path` in one
+/// What is written stays in memory; commit() brings it to the disk next to `path` and renames it to `path` in one
 /// step. A reader sees the old file or the new one, never half a file. Destroyed without commit(), it is as before.
 class File
 {
@@ -100,7 +100,7 @@ public:
   static File update(const std::filesystem::path &path);
 
   Group root() const { return {state_, "/"}; }
-  /// Ends writing: close, write, fsync, rename. The bytes do not tell in which portions rows were added to a series.
+  /// Ends writing: close, write, fsync, rename. The bytes do not show in which portions rows were added to a series.
   /// Groups of this file are invalid from here on.
   /// @pre the file was opened by create() or update() and not yet committed
   void commit();

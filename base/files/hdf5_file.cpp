@@ -55,8 +55,8 @@ void open_existing(FileState &state, const std::string &name, unsigned mode, hid
                                  state.path.string(), library_reason()));
 }
 
-/// A name that no other file in memory has, of this or of another module that holds this library: HDF5 tells them apart
-/// by it.
+/// A name that no other file in memory has, of this or of another module that holds this library, by which HDF5
+/// distinguishes them.
 std::string name_in_memory()
 {
   static unsigned long n = 0;
@@ -113,7 +113,7 @@ herr_t copy_object(hid_t from, const char *name, const H5L_info_t *link, void *t
   return H5Ocopy(from, name, *static_cast<hid_t *>(to), name, H5P_DEFAULT, H5P_DEFAULT);
 }
 
-/// What is in a file, in the order of names and rows: the bytes do not tell in which portions rows were added, and have
+/// What is in a file, in the order of names and rows: the bytes do not show in which portions rows were added, and have
 /// no gaps where some were cut off.
 void bring_in_order(FileState &file)
 {

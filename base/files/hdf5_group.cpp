@@ -94,7 +94,7 @@ bool write_values(std::span<const T> values, const Transfer &transfer)
 
 bool left_file = false; ///< an external link was met in this turn
 
-/// Properties of access to items by which no link to another file is followed: a file of a stranger could name any.
+/// Properties of access to items by which no link to another file is followed: an untrusted file could name any.
 hid_t within_file()
 {
   static const hid_t access = [] {
@@ -111,7 +111,7 @@ hid_t within_file()
   return access;
 }
 
-/// @param missing  what is said if there is none
+/// @param missing  the message if there is none
 Handle open_item(const FileState &file, const std::string &item, const char *missing = "there is no such item")
 {
   assert(file.id >= 0);
@@ -143,7 +143,7 @@ Handle create_dataset(const FileState &file, const std::string &item, hid_t spac
                  file, item, "creating the dataset failed (does it exist already?)");
 }
 
-/// A dataset that stores what it claims: rows that are not there would ask for any amount of memory. Deflated zeros
+/// A dataset that stores what it claims: rows that do not exist would ask for any amount of memory. Deflated zeros
 /// take a 1032nd of their size; rows that a resumed run has filled up take nothing.
 Handle open_stored(const FileState &file, const std::string &item)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the sources of base/files/hdf5.hpp share; nobody else includes it.
+// What the sources of base/files/hdf5.hpp share; no other file includes it.
 #pragma once
 #include "base/files/hdf5.hpp"
 
@@ -87,7 +87,7 @@ inline Handle checked(hid_t id, Handle::Close close, const FileState &file, cons
 inline bool answer(const FileState &file, const std::string &item, herr_t said)
 {
   if (said < 0)
-    fail(file, item, "it cannot be looked at");
+    fail(file, item, "it cannot be inspected");
   return said > 0;
 }
 } // namespace isostat::hdf5

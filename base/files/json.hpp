@@ -6,8 +6,8 @@
 
 namespace isostat
 {
-/// A JSON value; members of an object keep the order in which they were given. This header only names the type: whoever
-/// builds or reads a value includes <nlohmann/json.hpp>, in a .cpp because that header is long.
+/// A JSON value; members of an object keep the order in which they were given. This header only names the type: to
+/// build or read a value include <nlohmann/json.hpp>, in a .cpp because that header is long.
 using Json = nlohmann::ordered_json;
 
 /// Writes `value` aside, then replaces `path`. A number is written with the fewest digits that read back as the

@@ -13,8 +13,8 @@ class PvdCollection
 {
 public:
   /// @param path  of the .pvd; it appears with the first append
-  /// @param resume_entries  how many of the entries in an existing file to keep; 0: start anew. Those that are not
-  ///                        there any more are left out, with a warning: a run does not end for a list of its files
+  /// @param resume_entries  how many of the entries in an existing file to keep; 0: start again. Those that no
+  ///                        longer exist are left out, with a warning: a run does not end for a list of its files
   explicit PvdCollection(std::filesystem::path path, std::size_t resume_entries = 0);
 
   /// @param time  s

@@ -52,7 +52,7 @@ void expect_replaceable(const fs::path &path)
                                  path.string()));
 }
 
-/// A new file beside `path`, `path`.PROCESS-NUMBER.tmp, which no other writer has, in this process, in another, or on
+/// A new file next to `path`, `path`.PROCESS-NUMBER.tmp, which no other writer has, in this process, in another, or on
 /// another machine that sees the folder. It is locked as long as it is written, and gone after that unless it has
 /// become `path`.
 class FileAside

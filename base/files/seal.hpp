@@ -7,7 +7,7 @@
 namespace isostat
 {
 /// Bytes of a file with a seal at their end: a word by which it is known, their number, and their check sum (hash.hpp),
-/// 32 bytes in all. HDF5, and what reads it, takes no notice of what stands behind the end that the file itself names;
+/// 32 bytes in all. HDF5, and what reads it, takes no notice of what follows the end that the file itself names;
 /// so the library, which crashes on some wrong bytes, is not asked to open them.
 /// tested: tests/base/files/seal_test.cpp, fuzz_stored_packing
 std::string sealed(std::string bytes);

@@ -45,7 +45,7 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
         {
           read(path);
           if (!problems.empty())
-            warn(fmt::format("damaged checkpoint:{}\n  This run goes on from the checkpoint before, {}.", problems,
+            warn(fmt::format("damaged checkpoint:{}\n  This run continues from the checkpoint before, {}.", problems,
                              path.string()));
           return;
         }
@@ -55,7 +55,7 @@ void read_newest(const fs::path &folder, const std::function<void(const fs::path
         }
     }
   throw InputError(fmt::format("{}: no checkpoint to resume from{}", folder.string(),
-                               problems.empty() ? ": none was written. Start anew with --overwrite."
-                                                : problems + "\n  Or start anew with --overwrite."));
+                               problems.empty() ? ": none was written. Start again with --overwrite."
+                                                : problems + "\n  Or start again with --overwrite."));
 }
 } // namespace isostat

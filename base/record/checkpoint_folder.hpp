@@ -12,7 +12,7 @@ namespace isostat
 /// @throws RunFailure  disk full, not writable: the older ones survive
 void write_newest(const std::filesystem::path &folder, const std::function<void(hdf5::Group root)> &fill);
 
-/// Checkpoints of a folder, the newest first: fresh.h5, which is there where write_newest() was interrupted, last.h5,
+/// Checkpoints of a folder, the newest first: fresh.h5, which exists where write_newest() was interrupted, last.h5,
 /// previous.h5.
 std::vector<std::filesystem::path> checkpoints_of(const std::filesystem::path &folder);
 

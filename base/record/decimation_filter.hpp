@@ -30,7 +30,7 @@ public:
   /// The mean of each channel at a sample.   @pre sample < n_samples() <= sample + 12 stride + 1
   std::vector<double> at(std::uint64_t sample) const;
 
-  /// The samples that are kept, in the order in which they lie; another filter of this size goes on from them.
+  /// The samples that are kept, in the order in which they lie; another filter of this size continues from them.
   const std::vector<double> &samples() const { return samples_; }
   /// @throws InputError  another number of values
   void restore(const std::vector<double> &samples, std::uint64_t n_samples);

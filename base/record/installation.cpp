@@ -18,7 +18,7 @@ std::string missing_from_shared_folder(const std::string &name)
   const fs::path wanted = shared_folder() / name;
   if (fs::exists(wanted, failure))
     return "";
-  return wanted.string() + " is not there: the program was copied away from what belongs to it. Call it where it was "
+  return wanted.string() + " does not exist: the program was copied away from what belongs to it. Call it where it was "
                            "built or installed.";
 }
 } // namespace isostat

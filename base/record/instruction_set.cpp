@@ -43,7 +43,7 @@ std::string other_instruction_set(const std::string &made_with)
   if (made_with.empty() || made_with == instruction_set())
     return {};
   return fmt::format(
-      "the checkpoint was written with the instruction set {}, this machine goes on with {}: results "
+      "the checkpoint was written with the instruction set {}, this machine continues with {}: results "
       "may differ from those of one machine by round-off, which grows. For the same bits, if it has both: "
       "ISOSTAT_INSTRUCTION_SET={}",
       made_with, instruction_set(), made_with);

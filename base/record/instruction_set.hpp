@@ -15,6 +15,6 @@ std::string instruction_set();
 void use_instruction_set(const std::string &name);
 void use_instruction_set_of_environment();
 
-/// What to tell who goes on from a checkpoint made with another instruction set; empty if it is the same, or unknown.
+/// Message for a run that continues from a checkpoint of another instruction set; empty if it is the same, or unknown.
 std::string other_instruction_set(const std::string &made_with);
 } // namespace isostat

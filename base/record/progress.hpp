@@ -32,7 +32,7 @@ public:
   bool due(std::uint64_t step, double fraction);
 
   /// The line that is due: " 42.0 %  step       840       12 1/s  ETA 17 min  STATE". The rate is that since the line
-  /// before; the time left follows from the share done since the first call. Both start anew when steps or share fall
+  /// before; the time left follows from the share done since the first call. Both start again when steps or share fall
   /// back, as they do with a new stage. Without a fraction there is no share and no time left.
   std::string line(const std::string &state);
 

@@ -89,7 +89,7 @@ void Recorder::check(const hdf5::Group &root, std::size_t n_rows) const
 {
   refuse_newer(root, history_schema_version);
   if (!root.has("history"))
-    throw InputError(fmt::format("{}: no group \"history\"; restore the file or start the run anew", hdf5_.string()));
+    throw InputError(fmt::format("{}: no group \"history\"; restore the file or start the run again", hdf5_.string()));
   const hdf5::Group series = root.group("history");
   if (series.names().size() != columns_.size())
     throw InputError(fmt::format("{}: {} columns, expected {}; resume with the columns of the first run",
@@ -108,7 +108,7 @@ void Recorder::check(const hdf5::Group &root, std::size_t n_rows) const
 template <class Use>
 void Recorder::for_each_block(std::size_t n_rows, const Use &use) const
 {
-  constexpr std::size_t n_block = 4096; // a history of days is larger than the run that goes on with it
+  constexpr std::size_t n_block = 4096; // a history of days is larger than the run that continues with it
   const hdf5::File file = hdf5::File::open(hdf5_);
   const hdf5::Group series = file.root().group("history");
   std::vector<std::vector<double>> block(columns_.size());
@@ -124,7 +124,7 @@ void Recorder::resume(const std::string &scene)
 {
   std::error_code ignored;
   if (fs::is_directory(csv_, ignored))
-    throw InputError(fmt::format("{}: is a folder, where a file is to be written; remove it", csv_.string()));
+    throw InputError(fmt::format("{}: is a folder in place of a file; remove it", csv_.string()));
   check(hdf5::File::open(hdf5_).root(), n_rows_);
   hdf5::File file = empty_history(scene);
   hdf5::Group series = file.root().group("history");
@@ -169,7 +169,7 @@ void Recorder::with_own_file(const Work &work) const
   catch (const InputError &error)
     {
       throw RunFailure(fmt::format("{}\n  It was whole when this run wrote it, and another program has removed or "
-                                   "changed it since. Put it back and go on with --resume, or start anew with "
+                                   "changed it since. Put it back and continue with --resume, or start again with "
                                    "--overwrite.",
                                    error.what()));
     }
@@ -181,8 +181,8 @@ void Recorder::mend_csv()
   n_waiting_lines_ = 0;
   flush_hdf5();
   with_own_file([&] { copy_to_csv(); });
-  warn(fmt::format("{} was removed or changed while the run writes it; it has been written anew from {}", csv_.string(),
-                   hdf5_.string()));
+  warn(fmt::format("{} was removed or changed while the run writes it; it has been written again from {}",
+                   csv_.string(), hdf5_.string()));
 }
 
 void Recorder::append(std::span<const double> row)
@@ -190,8 +190,8 @@ void Recorder::append(std::span<const double> row)
   assert(row.size() == columns_.size());
   for (std::size_t c = 0; c < row.size(); ++c)
     if (!std::isfinite(row[c]))
-      throw RunFailure(fmt::format("{}: {} = {} in row {}; the run has gone wrong, or went on from a damaged "
-                                   "checkpoint. Take shorter steps, or start anew with --overwrite.",
+      throw RunFailure(fmt::format("{}: {} = {} in row {}; the run has gone wrong, or continued from a damaged "
+                                   "checkpoint. Take shorter steps, or start again with --overwrite.",
                                    csv_.string(), columns_[c].name, row[c], n_rows_ + 1));
   for (std::size_t c = 0; c < row.size(); ++c)
     {

@@ -27,7 +27,7 @@ struct RecordColumn
 ///
 /// Rows reach the CSV every `rows_per_line_flush` rows, after `seconds_per_line_flush` and at flush(); both files agree
 /// after flush(). Call flush() before a checkpoint is written and store n_rows() in it: a resumed run then continues
-/// both files as if never interrupted. The CSV is a copy: a resumed run writes it anew from history.h5, and so does a
+/// both files as if never interrupted. The CSV is a copy: a resumed run writes it again from history.h5, and so does a
 /// run that finds that another program removed, cut or lengthened it, with a warning. history.h5 is also renewed
 /// whenever the waiting rows outnumber a quarter of the written ones (at least 4096), so that memory stays bounded and
 /// the total copying linear. Failure to write is a RunFailure; the CSV keeps its whole lines and the rows still waiting
@@ -36,10 +36,10 @@ class Recorder
 {
 public:
   static constexpr std::size_t rows_per_line_flush = 64;
-  static constexpr double seconds_per_line_flush = 5; ///< of wall-clock time, to be looked at while a run is slow
+  static constexpr double seconds_per_line_flush = 5; ///< of wall-clock time, to be seen while a run is slow
 
   /// @param folder  made if it is missing
-  /// @param resume_rows  0: start anew, replacing what is there. Otherwise both files are cut to their first
+  /// @param resume_rows  0: start again, replacing what is there. Otherwise both files are cut to their first
   ///                     resume_rows rows; InputError if history.h5 holds fewer, or other columns
   /// @param scene  kept as attribute of history.h5, see file_format.hpp
   Recorder(const std::filesystem::path &folder, std::vector<RecordColumn> columns, std::size_t resume_rows = 0,

@@ -26,7 +26,7 @@ SeriesFile::SeriesFile(std::filesystem::path path, SeriesLayout layout, std::siz
   forget_waiting();
 }
 
-/// Takes the first rows of a file that is there as rows still to be written.
+/// Takes the first rows of an existing file as rows still to be written.
 void SeriesFile::load(std::size_t rows)
 {
   const hdf5::File file = hdf5::File::open(path_);
@@ -39,7 +39,7 @@ void SeriesFile::load(std::size_t rows)
     std::vector<double> values = root.read<double>(name);
     if (values.size() < rows * width)
       throw InputError(fmt::format("{}: {} rows, the checkpoint expects {}; restore the file, resume from an earlier "
-                                   "checkpoint, or start anew with --overwrite",
+                                   "checkpoint, or start again with --overwrite",
                                    path_.string(), values.size() / width, rows));
     values.resize(rows * width);
     return values;

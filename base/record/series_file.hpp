@@ -12,7 +12,7 @@ namespace isostat
 /// What a series file holds.
 struct SeriesLayout
 {
-  /// A quantity that has so many values in each row.
+  /// A quantity that has this many values in each row.
   struct Series
   {
     std::string name, unit;

@@ -53,7 +53,7 @@ bool lies_in(std::string_view path, std::string_view ancestor)
   return path.starts_with(ancestor) && (path.size() == ancestor.size() || path[ancestor.size()] == '.');
 }
 
-/// A value as it stands in the file, text without its quotes unless it is inside an array.
+/// A value as it is in the file, text without its quotes unless it is inside an array.
 std::string value_text(const toml::node &node, bool inside = false)
 {
   if (const auto *text = node.as_string())

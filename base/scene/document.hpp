@@ -31,7 +31,7 @@ public:
   const toml::table &root() const { return root_; }
   const toml::node *find(std::string_view path) const; ///< null if nothing is there
 
-  /// "scene.toml:14", or "--set motion.damping"; of a path that is not there, the line of the table it belongs to;
+  /// "scene.toml:14", or "--set motion.damping"; of a path that does not exist, the line of the table it belongs to;
   /// "scene" where the document has no name.
   std::string where(std::string_view path) const;
 

@@ -52,7 +52,7 @@ using Field = std::variant<std::monostate, double *, std::optional<double> *, st
 class StructRef
 {
 public:
-  /// Constant or not: whoever holds the reference knows whether it may write.
+  /// Constant or not: the holder of the reference knows whether it may write.
   template <class Struct>
   requires(!std::is_same_v<Struct, StructRef>) StructRef(const Struct &place)
       : place_(const_cast<Struct *>(&place)), type_(&typeid(Struct))

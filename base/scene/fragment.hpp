@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys of one concept, written once beside its struct and spliced into every kind of scene that has one.
+// Keys of one concept, written once next to its struct and spliced into every kind of scene that has one.
 #pragma once
 #include "base/scene/schema.hpp"
 
@@ -20,7 +20,7 @@ struct SceneFragment
   std::span<const Key> keys;
 };
 
-/// Keys that stand together in a table, and where they belong.
+/// Keys that belong together in a table, and where they belong.
 struct KeyRun
 {
   template <std::size_t n>

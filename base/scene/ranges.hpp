@@ -14,8 +14,7 @@ inline constexpr Range to_one{0, 1, true, false};       ///< (0, 1]
 inline constexpr Range to_ten{0, 10, true, false};      ///< (0, 10]
 inline constexpr Range right_angle{0, 90, false, true}; ///< degrees
 inline constexpr Range stresses{1, 1e12};
-inline constexpr const char *because_stresses =
-    "because less cannot be told from none, and more than a TPa leaves nothing of soil";
+inline constexpr const char *because_stresses = "because less is negligible, and no soil bears a TPa";
 inline constexpr Range moduli{1, 1e15};
 inline constexpr const char *because_moduli =
     "because no grain is as soft, and none a thousand times as stiff as diamond";

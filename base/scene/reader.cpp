@@ -25,8 +25,8 @@ std::string joined(const std::string &prefix, std::string_view word)
   const SceneSchema &schema = document.schema();
   const std::string known = schema.schema_path(path);
   const std::string near = schema.nearest_path(known);
-  document.refuse(path, near.empty() ? "is no key of this kind of file. --print-defaults lists all keys."
-                                     : fmt::format("is no key of a scene. Did you mean {}?", near));
+  document.refuse(path, near.empty() ? "is an unknown key. --print-defaults lists all keys."
+                                     : fmt::format("is an unknown key. Did you mean {}?", near));
 }
 
 /// Every key of the document is in the schema; tables are tables.
@@ -48,7 +48,7 @@ void check_known(const SceneDocument &document, const toml::table &table, const 
       if (section && section->items)
         continue; // each of its tables on its own
       if (!node.is_table())
-        document.refuse(path, section ? fmt::format("must be a table. Write [{}] on a line of its own.", path)
+        document.refuse(path, section ? fmt::format("must be a table. Write [{}] on its own line.", path)
                                       : fmt::format("must be a table. Write for example {} = {}.", path, key->value));
       check_known(document, *node.as_table(), path);
     }
@@ -65,7 +65,7 @@ std::string keys_of_kind(const SceneSchema &schema, const Section &section, std:
   std::vector<std::string_view> names;
   for (const Key &key : schema.keys)
     if (key.section() == section.name && (key.kinds == 0 || key.belongs_to(kind)) &&
-        key.name().find('.') == std::string_view::npos) // not what stands in a table within it
+        key.name().find('.') == std::string_view::npos) // not what is in a table within it
       names.push_back(key.name());
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -140,7 +140,7 @@ void fill_array(const SceneDocument &document, const Section &section, StructRef
     {
       const std::string prefix = fmt::format("{}.{}", name, i);
       if (!array->get(i)->is_table())
-        document.refuse(prefix, fmt::format("must be a table. Write [[{}]] on a line of its own.", name));
+        document.refuse(prefix, fmt::format("must be a table. Write [[{}]] on its own line.", name));
       check_known(document, *array->get(i)->as_table(), prefix);
       fill_table(document, section, prefix, section.items.at(scene, i));
     }
@@ -179,7 +179,7 @@ std::string read_scene_text(const std::string &path)
 {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
-    throw InputError(fmt::format("{}: is not there; must be a scene file (TOML). Check the path.", path));
+    throw InputError(fmt::format("{}: does not exist; must be a scene file (TOML). Check the path.", path));
   if (std::filesystem::is_directory(path, ignored))
     throw InputError(fmt::format("{}: is a folder; must be a scene file (TOML). Give one that is in it.", path));
   if (!std::filesystem::is_regular_file(path, ignored))
@@ -208,7 +208,7 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
   for (const fs::path &path : {beside_scene, here})
     if (fs::is_directory(path, ignored))
       document.refuse(key, fmt::format("is a folder: {}. Give a file that is in it.", path.string()));
-  document.refuse(key, fmt::format("is not there: neither {} nor {}. A relative path counts from the folder of the "
+  document.refuse(key, fmt::format("does not exist: neither {} nor {}. A relative path counts from the folder of the "
                                    "scene file or else from the working directory; correct it.",
                                    beside_scene.string(), here.string()));
 }

@@ -5,11 +5,11 @@
 
 namespace isostat
 {
-/// The text of a scene file.  @throws InputError if it is not there or cannot be read
+/// The text of a scene file.  @throws InputError if it does not exist or cannot be read
 std::string read_scene_text(const std::string &path);
 
-/// The absolute path of a file that a scene names. It counts from the folder of the scene file or, if it is not there,
-/// from the working directory.
+/// The absolute path of a file that a scene names. It counts from the folder of the scene file or, if it does not
+/// exist, from the working directory.
 /// @throws InputError  tested: tests/apps/deposit/scene_error_test.cpp
 std::string found_file(const SceneDocument &document, const std::string &key, const std::string &scene_path,
                        const std::string &file);
@@ -18,7 +18,7 @@ std::string found_file(const SceneDocument &document, const std::string &key, co
 std::string results_folder(const std::string &scene_path);
 
 /// Fills a scene from a document: every key of the document is known and belongs there, every value has the form, unit
-/// and range of the schema, what is left out takes its default. Rules between keys are left to check_groups and to the
+/// and range of the schema, an omitted key takes its default. Rules between keys are left to check_groups and to the
 /// owner of the schema.
 /// @param scene  of the type that the schema's keys and arrays of tables were made for; with its defaults
 /// @throws InputError      tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp

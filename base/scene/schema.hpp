@@ -40,14 +40,14 @@ constexpr unsigned kind_bit(Kind kind)
 /// One key of a scene file: everything that parsing, checks, writing, --print-defaults and the manual know of it.
 struct Key
 {
-  /// "motion.damping"; in an array of tables without the number: "stage.strain". A key whose range or meaning hangs on
-  /// the kind has an entry for each meaning, without kinds in common.
+  /// "motion.damping"; in an array of tables without the number: "stage.strain". A key whose range or meaning depends
+  /// on the kind has an entry for each meaning, without kinds in common.
   std::string_view path = {};
   FieldAccess field = {}; ///< none: nothing to keep (a table that only holds others)
   bool table = false;     ///< { ... } that holds other keys
   ShownUnit unit = {};    ///< of a quantity, quantity_list or size_curve
   Presence presence = Presence::standard;
-  const char *value = ""; ///< default or example as it stands in the file, without quotes; "" for no text
+  const char *value = ""; ///< default or example as it is in the file, without quotes; "" for no text
   Range range = {};
   const char *reason = ""; ///< of the range: "because tan() is used"
   std::span<const char *const> choices = {};

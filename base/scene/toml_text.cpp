@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Some wrong texts ("[" at the end of a line, a date before a blank) are mistakes of its own to toml++: it aborts in
-// debug, and in release tells the compiler that they cannot happen. TOML_ASSERT, its option for what is done then,
+// debug, and in release let the compiler assume that they cannot happen. TOML_ASSERT, its option for what is done then,
 // counts without NDEBUG only. No other source calls its parser, or the linker could take another copy.
 #undef NDEBUG
 namespace
@@ -62,7 +62,7 @@ private:
   }
 
   /// From an opening quote to the last closing one. The first letter behind a backslash, or behind the line break that
-  /// a backslash hides, is looked at as one outside of quotes: false if that letter is not ASCII.
+  /// a backslash hides, is treated as one outside of quotes: false if that letter is not ASCII.
   bool skip_string(char quote)
   {
     const bool multi_line = text_.substr(at_, 3) == std::string(3, quote);

@@ -12,7 +12,7 @@ namespace
 {
 constexpr double smallest = 1e-30, largest = 1e30; ///< besides 0, in size
 
-/// A value on its way from the file to its field, whose type says how it is read.
+/// A value between the file and its field, whose type says how it is read.
 struct Reading
 {
   const SceneDocument &document;
@@ -60,7 +60,7 @@ struct Reading
     *pair.low = number(*array->get(0));
     *pair.high = number(*array->get(1));
     if (*pair.low >= *pair.high)
-      refuse("must rise, or nothing of the curve is left");
+      refuse("must rise, or nothing remains of the curve");
   }
 
   void operator()(SizeCurve *curve) const

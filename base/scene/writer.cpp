@@ -20,7 +20,7 @@ std::string number_in_file(const Key &key, double value)
                                       : real_text(value);
 }
 
-/// The value of a field as it stands in the file; "" if it is not set.
+/// The value of a field as it is in the file; "" if it is not set.
 struct WriteValue
 {
   const Key &key;
@@ -74,7 +74,7 @@ struct WriteValue
   }
 };
 
-/// A scene, or one table of it, on its way to text.
+/// A scene, or one table of it, as it becomes text.
 struct Source
 {
   const SceneSchema &schema;

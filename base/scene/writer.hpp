@@ -4,7 +4,7 @@
 
 namespace isostat
 {
-/// A scene as a complete file: every key with its value and unit, with the digits that bring it back to the bit. What
+/// A scene as a complete file: every key with its value and unit, with the digits that bring it back bit for bit. What
 /// has no effect is left out: keys foreign to the kind of their table, inside a table that is switched off, or
 /// displaced by another key of their group; and 0 or no text where a key without default is not set.
 /// @param scene  of the type that the schema was made for

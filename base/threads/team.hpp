@@ -14,8 +14,8 @@ namespace isostat
 /// programs, too; without it the processors that this process may use.
 int default_threads();
 
-/// Threads that wait for short pieces of work, a step of a packing or an element of a column. Whoever waits spins for
-/// some 50 microseconds, about as long as waking a thread takes, and then sleeps. So a machine that is busy with
+/// Threads that wait for short pieces of work, a step of a packing or an element of a column. A waiting thread spins
+/// for some 50 microseconds, about as long as waking a thread takes, and then sleeps. So a machine that is busy with
 /// other work is not made busier by waiting.
 /// cost: 0.5 to 1 microsecond for each run() between two cores
 /// tested: tests/base/threads/team_test.cpp
@@ -56,7 +56,7 @@ private:
 
   std::vector<std::unique_ptr<Seat>> seats_; ///< seat 0 is the caller's, without a thread
   int process_ = getpid();
-  Call call_ = nullptr; ///< null: go home
+  Call call_ = nullptr; ///< null: stop
   const void *work_ = nullptr;
 };
 
@@ -75,7 +75,7 @@ void for_each_in_ranges(int threads, std::size_t n, const Work &work)
     range(0);
 }
 
-/// work(i) for i = 0 ... n - 1 on up to so many threads, each the next one that nobody has begun: for pieces that cost
+/// work(i) for i = 0 ... n - 1 on up to this many threads, each the next unclaimed one: for pieces that cost
 /// much and unequally. In order on one thread.
 /// @throws what work() threw; pieces that were not begun by then may be left out
 template <typename Work>

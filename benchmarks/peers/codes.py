@@ -105,7 +105,7 @@ class Yade:
             "yade": "Grains are stored by size, largest first, the order in which a packing is generated; contacts "
                     "start without history in both codes. Law, damping, walls, rate and step are the same.",
             "yade-morton": "As yade, but its grains are stored along the Morton curve that Isostat always uses.",
-            "yade-state": "YADE goes on from its own saved state with contact history, grains as generated; Isostat "
+            "yade-state": "YADE continues from its own saved state with contact history, grains as generated; Isostat "
                           "from the tables of that state, with the same history. YADE needs about twice the time per "
                           "step after it has loaded a state than for the same packing built in the running program, "
                           "whatever the order of its grains.",

@@ -41,7 +41,7 @@ class System:
         return self.asks("dpkg-query", "-W", "-f=${Version}", package)
 
     def install(self, program, package):
-        """Debian's package, when its program is not there yet."""
+        """Debian's package, when its program does not exist yet."""
         if self.asks("sh", "-c", f"command -v {program}"):
             return
         print(f"installing {self.label(package)}", flush=True)

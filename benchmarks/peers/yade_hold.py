@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What free grains do to a held packing in YADE: shears it at constant volume, stops the walls and waits.
+"""What rattlers do to a held packing in YADE: shears it at constant volume, stops the walls and waits.
 
     yade -n -x -j1 yade_hold.py PACKING STRAIN RATE TIME_STEP STEPS BRAKE TABLE
 
@@ -64,5 +64,5 @@ while done < int(steps):
 with open(table, "w", newline="") as file:
     out = csv.writer(file, lineterminator="\n")
     out.writerow(["steps held", "p' (kPa)", "q (kPa)", "kinetic energy of loaded grains (J)",
-                  "kinetic energy of free grains (J)", "free grains", "unbalanced force ratio"])
+                  "kinetic energy of rattlers (J)", "rattlers", "unbalanced force ratio"])
     out.writerows([[f"{v:.6g}" if isinstance(v, float) else v for v in r] for r in rows])

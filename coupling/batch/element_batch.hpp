@@ -41,7 +41,7 @@ public:
   bool is_mine(std::size_t id) const { return owners_[id] == exchange_.rank(); }
   const Exchange &exchange() const { return exchange_; }
 
-  /// Makes every element anew, on its rank; none if one fails. They are committed as they are.
+  /// Makes every element again, on its rank; none if one fails. They are committed as they are.
   void make(const std::function<Rve(std::size_t id)> &maker);
   /// @throws RunFailure  make() was not called yet
   void check_made() const;

@@ -6,7 +6,7 @@
 
 namespace isostat
 {
-/// Where the time went; the same on all ranks but for `batch_seconds` and `wave_seconds`.
+/// Where the time went; the same on all ranks except for `batch_seconds` and `wave_seconds`.
 struct RveMaterialCost
 {
   std::uint64_t trials = 0, steps = 0, moves = 0, stiffnesses = 0; ///< steps, moves: of all elements together
@@ -27,8 +27,8 @@ struct RveMaterialCost
 ///
 /// An element that rejects an increment in all its parts stops all ranks with one and the same RunFailure; all elements
 /// are back at the committed state then. A trial that is committed costs no copy of an element, see RveElement.
-/// cost of trial() and commit(): beside the elements 0.3 us each, one MPI_Allgatherv, and every 500 time steps a copy
-/// of an element: together some 1 % (docs/results/rve_material.md)
+/// cost of trial() and commit(): besides the elements 0.3 us each, one MPI_Allgatherv, and every 500 time steps a copy
+/// of an element: together some 1 % (docs/results/rve.md)
 /// tested: tests/coupling/batch/rve_material_test.cpp, tests/mpi/rve_material_mpi.cpp
 class RveMaterial : public Material
 {
@@ -60,7 +60,7 @@ public:
   void stiffness(std::span<Stiffness> tangents) const override;
   /// C of the skeleton, whether undrained or not: symmetric.
   void skeleton_stiffness(std::span<Stiffness> stiffnesses) const;
-  /// From C, see WaveModuliCache. cost when computed anew that of stiffness()
+  /// From C, see WaveModuliCache. cost when computed again that of stiffness()
   void wave_moduli(std::span<WaveModuli> moduli) const override;
 
   /// The same bytes for any number of ranks and threads, on every rank.

@@ -12,7 +12,7 @@ namespace isostat
 /// tested: tests/coupling/batch/wave_moduli_test.cpp (isotropic, cubic)
 WaveModuli max_wave_moduli(const Stiffness &stiffness);
 
-/// When wave moduli are computed anew.
+/// When wave moduli are computed again.
 struct RefreshRule
 {
   double rise = 0.25;              ///< p' has risen by this part since [-], or ...

@@ -42,7 +42,7 @@ ElementTrial RveElement::trial(const Mat3 &displacement_gradient)
   result.accepted = displacement_gradient.isZero(0) || advance(displacement_gradient, halvings_, result);
   if (!result.accepted)
     result.reason =
-        fmt::format("an increment of displacement gradient of {:.3g} cannot be taken, in {} parts neither: {}",
+        fmt::format("an increment of displacement gradient of {:.3g} cannot be applied, even in {} parts: {}",
                     displacement_gradient.norm(), 1u << halvings_, result.reason);
   result.stress = rve_.stress();
   return result;

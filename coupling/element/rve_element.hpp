@@ -26,8 +26,8 @@ struct ElementTrial
 /// A representative volume element for trials: each starts from the committed state, any number of them, and the way
 /// back to it is bitwise.
 ///
-/// An element goes on from where the last trial left it, so a trial that is committed costs nothing beyond itself. The
-/// way back is a copy of an earlier committed state and the increments taken since, to be run again: the copy is
+/// An element continues from where the last trial left it, so a trial that is committed costs nothing beyond itself.
+/// The way back is a copy of an earlier committed state and the increments taken since, to be run again: the copy is
 /// renewed when it is more than 500 time steps old, at the price of one or two steps. Once an element has gone back,
 /// its next commit makes a copy at once, because a solver that goes back once (Newton) does it in every step; it then
 /// never runs an increment twice.

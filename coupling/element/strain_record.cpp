@@ -105,7 +105,7 @@ StrainRecord read_strain_record(const std::filesystem::path &folder)
     const hdf5::File file = hdf5::File::open(folder / "packing.h5");
     const hdf5::Group root = file.root();
     expect_format(root, format_name, schema_version, "strain record",
-                  "Repeat it with the version that wrote it, or run the column anew.");
+                  "Repeat it with the version that wrote it, or run the column again.");
     record.depth = root.attribute<double>("depth");
     record.settings.undrained = root.attribute<std::uint64_t>("undrained") != 0;
     record.settings.halvings = static_cast<unsigned>(root.attribute<std::uint64_t>("halvings"));

@@ -25,7 +25,7 @@ struct InSituSettings
 
 /// A specimen at a target stress, in its own axes. The element's mixed control leads there in steps of a
 /// factor 2 at most, geometric in normal stresses, and is repeated until no stress moves by more than twice the
-/// tolerance in 2,000 time steps without strain: a packing at a few kPa has soft modes that need so many.
+/// tolerance in 2,000 time steps without strain: a packing at a few kPa has soft modes that need this many.
 /// @param target  Cauchy effective stress in the specimen's axes (y vertical), Pa, tension positive
 /// @param motion  of the grains on their way
 /// @throws InputError  not compressive, p' < min_pressure    @throws RunFailure  not reached: says how near it came

@@ -7,7 +7,7 @@
 
 namespace isostat
 {
-/// A specimen brought to its stress in situ, on its way to the cache.
+/// A specimen brought to its stress in situ, for the cache.
 struct InSituState
 {
   std::string recipe;            ///< in_situ_recipe()
@@ -20,7 +20,7 @@ std::vector<std::byte> to_bytes(const std::vector<InSituState> &states);
 void append_states(std::vector<InSituState> &states, std::span<const std::byte> bytes);
 
 /// Specimens at their stress in situ, kept from run to run: a specimen library (specimen_library.hpp) whose entries are
-/// named by a hash of their recipe, which stands in `provenance` and is compared as well. Any entry can be the specimen
+/// named by a hash of their recipe, which is in `provenance` and is compared as well. Any entry can be the specimen
 /// of an element test.
 /// tested: tests/coupling/in_situ/in_situ_start_test.cpp
 class InSituCache
@@ -31,7 +31,7 @@ public:
   explicit InSituCache(std::filesystem::path path);
 
   std::optional<Snapshot> find(const std::string &recipe) const;
-  /// Adds what is not there yet, aside and renamed. A damaged file is kept with the ending ".damaged", and a line on
+  /// Adds what does not exist yet, aside and renamed. A damaged file is kept with the ending ".damaged", and a line on
   /// stderr says so. So does one that cannot be written, which is as before: the run has its states.
   void add(const std::vector<InSituState> &states) const;
 

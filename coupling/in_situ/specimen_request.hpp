@@ -15,16 +15,16 @@ struct SpecimenRequest
   std::optional<double> relative_density;
   std::size_t realisation = 0; ///< counts the seeds that the library has of this density, rising
   std::string library = {};    ///< file with the specimens of this sand; empty: that of RveMaterialSettings
-  std::size_t mixed = 1;       ///< so many seeds, from `realisation` on, of which a point has some by lot; 1: no lot
-  std::size_t lot = 0;         ///< another number, another lot
-  double lot_length = 0; ///< points of the same block, so long and wide, have the same lot; 0: each has its own, m
-  std::size_t drawn = 0; ///< what the lot gave, below `mixed`
+  std::size_t mixed = 1;       ///< seeds, from `realisation` on, of which a point draws some at random; 1: none drawn
+  std::size_t lot = 0;         ///< another number, another draw
+  double lot_length = 0;       ///< points of the same block, so long and wide, share a draw; 0: each draws alone, m
+  std::size_t drawn = 0;       ///< result of the draw, below `mixed`
 
   /// Which seed, as `realisation` counts, the k-th packing of the point has: after the last of the mixed ones the first
   /// follows, so that up to `mixed` packings of a point differ.
   std::size_t seed_of(std::size_t k) const { return realisation + (mixed > 1 ? (drawn + k) % mixed : k); }
 
-  /// Seeds that the library must have for points of so many packings.
+  /// Seeds that the library must have for points of this many packings.
   std::size_t n_seeds(std::size_t per_point) const { return realisation + (mixed > 1 ? mixed : per_point); }
 
   bool operator==(const SpecimenRequest &) const = default;
@@ -44,7 +44,7 @@ const LibraryEntry &nearest_entry(const std::vector<LibraryEntry> &entries, cons
 /// tested: tests/python/library_test.py
 std::vector<LibraryEntry> list_specimens(const std::filesystem::path &path);
 
-/// Before any work: whether a library has the seeds of a request, for points of so many packings.
+/// Before any work: whether a library has the seeds of a request, for points of this many packings.
 /// @param section, packings  where a scene says the request and the number, for the message
 /// @throws InputError  as nearest_entry(), naming the library
 /// tested: tests/coupling/in_situ/specimen_request_test.cpp

@@ -33,7 +33,7 @@ Owners renamed_to_stay(const Owners &parts, const Owners &present, int n_ranks);
 /// When elements may move.
 struct BalanceRule
 {
-  double threshold = 1.1;       ///< imbalance above which elements are placed anew [-]
+  double threshold = 1.1;       ///< imbalance above which elements are placed again [-]
   double min_gain = 0.05;       ///< ... if the largest load falls by at least this part [-]
   std::uint64_t interval = 100; ///< commits between two checks
   void check() const;           ///< @throws InputError

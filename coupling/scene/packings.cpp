@@ -25,15 +25,15 @@ constexpr Key packings[] = {
            "working directory. Left out: none are kept."},
   {.path = "in_situ", .field = member<&RveMaterialSettings::in_situ, &InSituSettings::path>, .value = "all-stresses",
    .choices = in_situ_choices,
-   .text = "Packings start at the vertical and horizontal stress that the soil has in situ (in a column its weight and "
-           "`layer.k0` say it), or, without lateral strain, at the horizontal stress that they give themselves."},
+   .text = "Packings start at the vertical and horizontal stress of the soil in situ (in a column from weight and "
+           "`layer.k0`), or, without lateral strain, at the horizontal stress that results."},
   {.path = "realisations", .field = member<&RveMaterialSettings::realisations>, .value = "1", .range = {1, 1000},
    .reason = "because a point has at least one packing, and a thousand run a thousand times as long",
-   .text = "Packings of a Gauss point, of as many seeds; its stress is their mean."},
+   .text = "Packings at a Gauss point, each from another seed; its stress is their mean."},
   {.path = "min_steps", .field = member<&RveMaterialSettings::min_steps>, .value = "20", .range = {1, 1e6},
    .reason = one_or_more,
-   .text = "Time steps of the grains in each increment of the elements, at least: small increments would be over in "
-           "one or two, before the grains find their places."},
+   .text = "Least number of time steps of the grains in each increment of an element: small increments would "
+           "otherwise end after one or two, before the grains find their places."},
 };
 
 constexpr Key specimens[] = {
@@ -48,16 +48,16 @@ constexpr Key specimens[] = {
 constexpr Key lots[] = {
   {.path = "mixed_realisations", .field = member<&SpecimenRequest::mixed>, .value = "1", .range = counts,
    .reason = one_or_more,
-   .text = "Each Gauss point has one of this many seeds, from `realisation` on, at random (with several `realisations` "
-           "as many that differ); 1: all points have the same, brought to the stress of their depth. 1, or at least "
-           "`realisations`."},
+   .text = "Each Gauss point draws one of this many seeds at random, from `realisation` on (with several "
+           "`realisations` as many different ones). 1: all points have the same packing, brought to the stress of "
+           "their depth. 1, or at least `realisations`."},
   {.path = "lot", .field = member<&SpecimenRequest::lot>, .value = "0",
-   .text = "Another number draws other seeds of the `mixed_realisations`. Only with `mixed_realisations` above 1, as "
+   .text = "Number of the draw: another one draws other seeds. Only with `mixed_realisations` above 1, like "
            "`lot_length`."},
   {.path = "lot_length", .field = member<&SpecimenRequest::lot_length>, .unit = unit::m, .value = "0 m",
    .range = not_negative,
-   .text = "Points of the same block, so long and as wide, counted from the base, draw the same seeds: the soil varies "
-           "over a length of its own, whatever the mesh; 0 m: each point draws for itself."},
+   .text = "Points in one block of this length and width, counted from the base, share a draw: the soil varies over "
+           "this length, whatever the mesh. 0 m: each point draws for itself."},
 };
 // clang-format on
 } // namespace

@@ -14,7 +14,7 @@ class SceneDocument;
 SceneFragment<RveMaterialSettings> packing_keys();
 /// Which specimens a soil is made of: relative_density, realisation.
 SceneFragment<SpecimenRequest> specimen_keys();
-/// Points that draw their specimens: mixed_realisations, lot, lot_length.
+/// Points that draw their specimens: `mixed_realisations`, `lot`, `lot_length`.
 SceneFragment<SpecimenRequest> lot_keys();
 
 /// What the table of keys cannot say: soil of grains needs a library.
@@ -22,7 +22,7 @@ SceneFragment<SpecimenRequest> lot_keys();
 /// tested: tests/apps/deposit/scene_error_test.cpp, tests/apps/biaxial_test.py
 void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings);
 /// @param section  of the request, "layer.0"   @param per_point  packings of a point, by the key `realisations`
-/// @throws InputError  fewer mixed seeds than a point has packings, a lot without any
+/// @throws InputError  fewer mixed seeds than a point has packings, a draw number without any
 /// tested: tests/apps/deposit/scene_error_test.cpp
 void check_lot(const SceneDocument &document, const std::string &section, const SpecimenRequest &request,
                std::size_t per_point, const std::string &realisations);

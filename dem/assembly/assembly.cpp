@@ -14,7 +14,7 @@ namespace isostat
 namespace
 {
 constexpr double max_strain_step = 0.01;
-/// Of the smallest radius, in one step: from there on a packing is said to explode. At p' = 10 MPa overlaps reach a
+/// Of the smallest radius, in one step: from there on a packing counts as exploding. At p' = 10 MPa overlaps reach a
 /// tenth of the radius, and a grain that snaps off moves by 1 %; at 66 MPa one has moved by 5.7 %. What really explodes
 /// moves by more from step to step.
 constexpr double max_grain_step = 0.2;

@@ -125,7 +125,7 @@ public:
   /// State with all contacts in force; a cell is turned into the laboratory frame.  @pre compute_forces(), not yet
   /// moved
   Snapshot snapshot() const;
-  /// State to go on from, after move(): positions ahead of the contact history by one step; a cell in its own frame.
+  /// State to continue from, after move(): positions ahead of the contact history by one step; a cell in its own frame.
   Snapshot checkpoint() const;
 
   /// State with contacts in force, forces included, in the fewest numbers, and back to the same bits. A list of pairs
@@ -136,13 +136,13 @@ public:
   /// Balance since the first force evaluation with settings.measure_energy; zero without it.  @pre compute_forces(),
   /// not yet moved
   EnergyBalance energy() const;
-  /// What it goes on from after a checkpoint.
+  /// What it continues from after a checkpoint.
   const EnergyMemory &energy_memory() const { return meter_.memory(); }
   void set_energy_memory(const EnergyMemory &memory) { meter_.set_memory(memory); }
 
 private:
   ContactForces::Input force_input() const { return {law_, packing_, domain_, settings}; }
-  /// Contact forces of this step, evaluated now if nobody has looked before.
+  /// Contact forces of this step, evaluated now if they were not before.
   const ContactForces &forces() const;
   void update_list(double max_step);
   void add_gravity();

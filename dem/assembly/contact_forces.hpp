@@ -14,7 +14,7 @@ struct StepSettings
   double time_step = 0;          ///< s; must be positive when grains are moved
   double contact_damping = 0;    ///< beta of dashpots in contacts, dem/contact/dashpot.hpp [-], [0, 1]
   double damping = 0.2;          ///< local damping [-], [0, 1)
-  double free_grain_damping = 0; ///< share of their velocity that free grains lose, see FreeGrainDamping [-], [0, 1]
+  double free_grain_damping = 0; ///< share of their velocity that rattlers lose, see FreeGrainDamping [-], [0, 1]
   bool carry_grains = false;     ///< in a box: they share the homogeneous motion of its walls, see CarriedStep
   Vec3 gravity = Vec3::Zero();   ///< m/s2
   bool measure_energy = false;   ///< from the next force evaluation on, keep the sums of Assembly::energy()
@@ -22,18 +22,18 @@ struct StepSettings
   /// result. One thread is taken where several turn out to be no faster: see ThreadChoice. Give 1 where assemblies run
   /// side by side.
   int threads = 1;
-  bool fixed_threads = false; ///< so many, even where they do not pay: for measurements and tests
+  bool fixed_threads = false; ///< this many, even where they do not pay: for measurements and tests
 };
 
 /// Contact forces of a step with the history of the contacts, and when they are evaluated. On one thread a step begins
 /// with nothing evaluated, and pairs are evaluated by whichever comes first:
 ///
-///     evaluate()      somebody looks at forces, history or sums: all pairs, then all ghosts
+///     evaluate()      a caller reads forces, history or sums: all pairs, then all ghosts
 ///     finish_step()   grains are about to move: chunk by chunk with the motion of the chunk's grains, while they are
 ///                     in the cache
 ///
 /// Several threads evaluate pairs as the step begins. The bits are the same in every case.
-/// Other forces on grains, such as walls' and gravity, are added to action() by whoever knows them.
+/// Other forces on grains, such as walls' and gravity, are added to action() by the code that computes them.
 /// tested: tests/dem/assembly/assembly_test.cpp, tests/verification/threads_test.cpp, cell_bits_test.cpp
 class ContactForces
 {

@@ -9,7 +9,7 @@
 
 namespace isostat
 {
-/// What an energy balance goes on from; part of a checkpoint.
+/// What an energy balance continues from; part of a checkpoint.
 struct EnergyMemory
 {
   bool started = false;

@@ -7,7 +7,7 @@ namespace isostat
 {
 /// One thread or several, whichever has been faster: a packing may be too small for several, and on a machine that is
 /// busy with other work threads wait for each other. The way in use is left for 1/50 of the time, for a trial of the
-/// other one, and given up where the other one has been faster by 3 %. Only time hangs on it, no result.
+/// other one, and given up where the other one has been faster by 3 %. Only time depends on it, no result.
 ///
 ///     [ one ][ several ][          use, 1 s          ][ trial ][          use, 1 s          ] ...
 class ThreadChoice

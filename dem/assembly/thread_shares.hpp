@@ -9,7 +9,7 @@ namespace isostat
 {
 /// Which chunks each thread works on: consecutive ones, of a cost in proportion to how fast the thread has been so far.
 /// Threads are not alike: the one with the lower chunks reads grains that another has just moved, and a core may be
-/// busy elsewhere. Only time hangs on it, no result.
+/// busy elsewhere. Only time depends on it, no result.
 class ThreadShares
 {
 public:

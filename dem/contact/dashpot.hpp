@@ -11,13 +11,13 @@ inline double dashpot_coefficient(double beta, double kn, double m1, double m2)
   return 2 * beta * std::sqrt(kn * m1 * m2 / (m1 + m2));
 }
 
-/// Viscous damping of contacts: a dashpot along the normal, beside the spring of any law. With v_n = n . (v2 - v1) the
+/// Viscous damping of contacts: a dashpot along the normal, next to the spring of any law. With v_n = n . (v2 - v1) the
 /// rate at which two grains part, kn the stiffness of the law and m* = m1 m2/(m1 + m2),
 ///
 ///     F_n = fn - min(c v_n, fn),   c = 2 beta sqrt(m* kn)
 ///
 /// No contact pulls, and limits of friction and rolling go by the elastic fn. beta is the share of critical damping at
-/// which two free grains collide; they part with the restitution
+/// which two single grains collide; they part with the restitution
 ///
 ///     e = exp[ -(beta/w) (pi - atan2(2 beta w, 1 - 2 beta^2)) ],   w = sqrt(1 - beta^2)
 ///

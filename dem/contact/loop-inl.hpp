@@ -150,7 +150,7 @@ struct Loop
       {
         p.r1 = transposed(x1).w;
         p.r2 = hn::Sub(p.reach, p.r1);
-        return {p.r1, p.r2}; // not looked at
+        return {p.r1, p.r2}; // not used
       }
     const Quad moving = transposed(
         differences(load_records(k.velocity, k.first + pair), load_records(k.velocity, k.second + pair), x1));

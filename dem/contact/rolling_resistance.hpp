@@ -77,7 +77,7 @@ Concrete with_features(Concrete law, LawFeatures on)
   return law;
 }
 
-/// Force, torques and new history of one contact: the plain scalar form, to be read beside rolling_resistance-inl.hpp,
+/// Force, torques and new history of one contact: the plain scalar form, to be read next to rolling_resistance-inl.hpp,
 /// which is the same over lanes. Incremental, without granular ratcheting.
 /// @param dt  time step, s     @param history  of the step before; overwritten with that of this step
 /// tested: tests/dem/contact/linear_rolling/law_test.cpp, tests/dem/contact/hertz_mindlin/law_test.cpp

@@ -5,7 +5,7 @@
 namespace isostat
 {
 /// Whole numbers U, det U = +1, by which edges H (columns, m) become the most compact periods H U of the same lattice:
-/// reduced in the sense of Minkowski, |a| <= |b| <= |c|, each as short as can be beside those before it. Hence
+/// reduced in the sense of Minkowski, |a| <= |b| <= |c|, each as short as can be next to those before it. Hence
 ///
 ///     |a| is the shortest period of the lattice at all;
 ///     every width of the cell H U is at least |a| / sqrt(2), however much the cell H leans

@@ -71,7 +71,7 @@ std::optional<Mat3> PeriodicCell::upright_edges() const
             if (j == k)
               continue;
             const double lean = upright.col(k).dot(upright.col(j)) / upright.col(j).squaredNorm();
-            if (!(std::abs(lean) > max_lean)) // or not a number: whoever moves grains finds that
+            if (!(std::abs(lean) > max_lean)) // or not a number: the code that moves grains finds that
               continue;
             upright.col(k) -= std::round(lean) * upright.col(j).eval();
             changed = again = true;

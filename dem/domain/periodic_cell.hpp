@@ -23,7 +23,7 @@ inline Eigen::Vector3i image_shift(ImageCode code)
 
 /// Periodic cell of a representative volume element under any velocity gradient:
 ///
-///         c ____          x = deformation X + fluctuations; an image of a grain stands at x + edges * (whole numbers)
+///         c ____          x = deformation X + fluctuations; an image of a grain is at x + edges * (whole numbers)
 ///          /   /|
 ///         /___/ | b       own frame: turns with the mean rotation of the material,
 ///     a  |   |  /         so that all it ever sees is stretch; laboratory = rotation * own

@@ -18,17 +18,17 @@ constexpr const char *answers[] = {"report", "error"};
 constexpr Key keys[] = {
   {.path = "stress_tolerance", .field = member<&ControlSpec::stress_tolerance>, .value = "0.01",
    .range = ranges::to_one, .reason = "because it is relative to the target",
-   .text = "A stress that a stage keeps is off its target by more than this: |stress - target| over the target, or "
-           "over 5 % of p0' where the target is lower."},
+   .text = "A stress is off its target above this: |stress - target| over the target, or over 5 % of p0' where the "
+           "target is lower."},
   {.path = "indicator_tolerance", .field = member<&ControlSpec::indicator_tolerance>, .value = "0.2",
    .range = ranges::positive,
-   .text = "The quasi-static indicator is too large above this. It is looked at until the specimen liquefies."},
+   .text = "The quasi-static indicator is too large above this. It is checked until the specimen liquefies."},
   {.path = "strain_share", .field = member<&ControlSpec::strain_share>, .value = "0.05", .range = {0, 1, false, true},
    .reason = "because it is a share of the strain of a stage",
-   .text = "Control is lost where a stress or the indicator is outside of its tolerance for more than this share of "
-           "the strain that the stage drives."},
+   .text = "Control is lost when a stress or the indicator is outside its tolerance for more than this share of the "
+           "strain that the stage drives."},
   {.path = "on_loss", .field = member<&ControlSpec::stop>, .value = "report", .choices = answers,
-   .text = "Lost control is told in the summary and on the terminal, or ends the run as an error (exit code 1)."},
+   .text = "Lost control is reported in the summary and on the terminal, or ends the run as an error (exit code 1)."},
 };
 // clang-format on
 
@@ -57,7 +57,7 @@ void add(Deviation &deviation, double amount, double tolerance, double value, do
     deviation.worst = amount, deviation.value = value, deviation.target = target;
 }
 
-/// The stage's quantities that are off for more than the share of a strain, of those not yet told.
+/// The stage's quantities that are off for more than the share of a strain, of those not yet reported.
 std::vector<std::string> lost_now(const ControlSpec &spec, double strain, DriveState &state)
 {
   std::vector<std::string> lines;
@@ -101,7 +101,7 @@ std::vector<std::string> close_control(const ControlSpec &spec, DriveState &stat
 {
   ControlState &control = state.control;
   std::vector<std::string> lines = lost_now(spec, control.strain, state);
-  for (const ControlledQuantity quantity : all_quantities) // not by what was told: the end may have been put off since
+  for (const ControlledQuantity quantity : all_quantities) // not by what was reported: the end may have moved since
     if (control.of(quantity).strain > spec.strain_share * control.strain)
       control.losses.push_back(loss_of(state, quantity));
   return lines;

@@ -30,7 +30,7 @@ SceneFragment<ControlSpec> control_keys();
 using KeptStresses = std::array<std::optional<double>, 4>;
 
 /// A check, every 50 steps of a stage that shears: what lay outside of its tolerance since the last one adds the strain
-/// driven meanwhile. The indicator is looked at until the specimen liquefies: afterwards there is no stress to compare
+/// driven meanwhile. The indicator is checked until the specimen liquefies: afterwards there is no stress to compare
 /// inertia with.
 /// @param stress  sigma_x, sigma_y, sigma_z, tau_xy as measured, Pa, compression positive
 /// @param planned  strain at which the stage ends, an amount; 0: unknown
@@ -40,7 +40,7 @@ std::vector<std::string> check_control(const ControlSpec &spec, const KeptStress
                                        const std::array<double, 4> &stress, double planned, DriveState &state,
                                        double scale = 0);
 
-/// At the end of a stage: what was lost joins DriveState::control.losses.   @return a line for each loss not yet told
+/// At the end of a stage: what was lost joins DriveState::control.losses.   @return a line for each unreported loss
 std::vector<std::string> close_control(const ControlSpec &spec, DriveState &state);
 
 /// "stage 0: sigma_x off its target of 200 kPa, 0.12 kPa at worst, for 71 % of the strain, from a strain

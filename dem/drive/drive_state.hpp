@@ -4,7 +4,7 @@
 //
 // Every struct lists its fields once (base/fields.hpp): checkpoints (dem/io/checkpoint.cpp) and packed elements
 // (dem/rve/rve_bytes.cpp) go by that list.
-// tested: tests/dem/io/checkpoint_test.cpp (every field comes back to the bit)
+// tested: tests/dem/io/checkpoint_test.cpp (every field comes back bit for bit)
 #pragma once
 #include "base/fields.hpp"
 #include "dem/domain/rigid_box.hpp"
@@ -141,7 +141,7 @@ struct PathProgress
   ISOSTAT_FIELDS(stress, tau, volume, reversals, table, place, strain, gamma)
 };
 
-/// What a stress servo goes on from.
+/// What a stress servo continues from.
 struct ServoState
 {
   Vec3 step = Vec3::Zero();          ///< of the step before: wall displacement, m per wall, inward positive; of a cell
@@ -162,7 +162,7 @@ struct Liquefaction
   ISOSTAT_FIELDS(step, reversals, strain)
 };
 
-/// Strain softening under a load that is to go on rising (dem/drive/stages/cyclic_response.hpp).
+/// Strain softening under a load that should continue rising (dem/drive/stages/cyclic_response.hpp).
 struct Softening
 {
   std::uint64_t step = 0, reversals = 0; ///< when it counted as flow
@@ -320,7 +320,7 @@ struct ControlState
   ISOSTAT_FIELDS(strain, last_strain, sigma_x, sigma_y, sigma_z, tau_xy, indicator, losses)
 };
 
-/// All of it: a resumed run goes on from here to the same bits.
+/// All of it: a resumed run continues from here to the same bits.
 struct DriveState
 {
   ProgrammePlace place;

@@ -11,7 +11,7 @@ namespace isostat
 namespace
 {
 // clang-format off
-// two keys that stand in both tables, with the defaults and words of each
+// two keys of both tables, with the defaults and words of each
 constexpr Key damping(const char *value, const char *text)
 {
   return {.path = "damping", .field = member<&MotionSpec::damping>, .value = value, .range = {0, 1, false, true},
@@ -29,31 +29,31 @@ constexpr Key shared[] = {
   {.path = "contact_damping", .field = member<&MotionSpec::contact_damping>, .value = "0.05",
    .range = {0, 1, false, true},
    .reason = "because it is a share of critical damping; a large one needs a small time step",
-   .text = "Dashpots along the normals of contacts, as a share of critical damping: two grains that collide part with "
-           "0.86 of their speed at 0.05 (Hertz-Mindlin law: 0.85). 0: none."},
+   .text = "Dashpots along contact normals, as a fraction of critical damping: at 0.05 two colliding grains rebound "
+           "with 0.86 of their speed (Hertz-Mindlin law: 0.85). 0: none."},
   {.path = "free_grain_damping", .field = member<&MotionSpec::free_grain_damping>, .value = "0.1", .range = {0, 1},
    .reason = "because it is a share",
-   .text = "Share of its velocity that a grain on which nothing acts loses in each step; 0: it flies on until it hits "
-           "another one, and knocks at the packing as long as the test lasts."},
+   .text = "Fraction of its velocity that a rattler, a grain on which nothing acts, loses in each step. 0: rattlers "
+           "keep flying and hitting the packing throughout the test."},
 };
 
 constexpr Key chosen[] = {
-  damping("0.1", "Local (non-viscous) damping coefficient. It brings whole packings to rest, and holds back what "
-                 "gives way as a whole."),
+  damping("0.1", "Local (non-viscous) damping coefficient. It brings whole packings to rest but also resists their "
+                 "collective motion."),
   inertial_number(Presence::optional, "1e-4",
-                  "Inertial number I at the mean effective stress p0' with which shearing begins. The axial strain "
+                  "Inertial number I at the mean effective stress p0' at which shearing begins. The axial strain "
                   "rate (in simple shear that of gamma_xy) is at most I sqrt(p0'/density)/d50. Left out: 7e-4 in "
-                  "cyclic tests, 4e-5 in those that go one way, whose path depends more on the rate."),
+                  "cyclic tests, 4e-5 in monotonic ones, whose path depends more on the rate."),
   {.path = "load_per_wave", .field = member<&MotionSpec::load_per_wave>, .value = "0.1", .range = {0, 1},
    .reason = "because it is a share of p0'; a stress that changes faster is not uniform in the packing",
-   .text = "The load, q or tau, changes at most by this share of p0' in the nominal time of a wave through the "
-           "packing, L sqrt(density/E), E the modulus of contacts under p0' (young of the linear law): the strain rate "
-           "is lowered where the packing is stiff, the larger the packing the more, but not below a hundredth. 0: "
+   .text = "The load (q or tau) changes by at most this fraction of p0' in the nominal time of a wave through the "
+           "packing, L sqrt(density/E), with E the contact modulus under p0' (young of the linear law). The strain "
+           "rate is lowered where the packing is stiff, more for larger packings, but not below a hundredth. 0: "
            "never lowered. Not used with a fixed strain_rate."},
   {.path = "carry_grains", .field = member<&MotionSpec::carry_grains>, .value = "true",
-   .text = "In a box: grains share the homogeneous motion of the walls, as those of a periodic cell do, so that walls "
-           "which start or turn round send no waves; false: walls push. Walls that only follow a pressure (compress, "
-           "rebalance) always push."},
+   .text = "In a box: grains share the homogeneous motion of the walls, as in a periodic cell, so walls that start "
+           "or reverse send no waves. false: walls push. Walls that only follow a pressure (compress, rebalance) "
+           "always push."},
   {.path = "strain_rate", .field = member<&MotionSpec::strain_rate>, .unit = unit::per_s,
    .presence = Presence::optional, .value = "0.5 1/s", .range = ranges::positive, .group = "rate",
    .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the inertial number and "
@@ -68,8 +68,8 @@ constexpr Key chosen[] = {
 constexpr const char *drives[] = {"dynamic", "static"};
 constexpr Key statics[] = {
   {.path = "drive", .field = member<&StaticDrive::on>, .value = "dynamic", .choices = drives,
-   .text = "How stages that shear go on. dynamic: in time steps, at a rate. static: in increments of strain, each of "
-           "which is taken to balance; rates and dampings have no part in it. Preparation is dynamic; static needs a "
+   .text = "How stages that shear advance. dynamic: in time steps, at a rate. static: in increments of strain, each "
+           "of which is taken to balance; rates and dampings are ignored. Preparation is dynamic; static needs a "
            "stage that shears."},
   {.path = "increment", .field = member_of<StaticDrive, &StaticDrive::increment>, .value = "5e-5",
    .range = {0, 1e-3, true, false},
@@ -81,12 +81,12 @@ constexpr Key statics[] = {
            "are at most this share of the largest contact force on it."},
   {.path = "left_out", .field = member_of<StaticDrive, &StaticDrive::balance, &BalanceSpec::left_out>, .value = "0.01",
    .range = {0, 1, false, true}, .reason = "because it is a share",
-   .text = "static: share of the grains with contacts, the worst, that need not be in balance."},
+   .text = "static: share of the grains with contacts that need not be in balance: the worst ones."},
 };
 
 constexpr Key controlled[] = {
-  damping("0.2", "Local (non-viscous) damping coefficient. With less than 0.2 packings whose strain answers their "
-                 "stress hardly come to rest."),
+  damping("0.2", "Local (non-viscous) damping coefficient. Below 0.2 packings whose strain responds to their stress "
+                 "hardly come to rest."),
   inertial_number(Presence::standard, "1e-4",
                   "Inertial number I at the mean effective stress p0' that a packing has in situ. Increments that "
                   "would strain it faster than I sqrt(p0'/density)/d50 take more time steps of the grains than "

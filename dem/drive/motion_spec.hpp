@@ -59,6 +59,6 @@ void check(const MotionSpec &motion);
 /// What the motion says of damping, for the steps to come.
 void set_damping(const MotionSpec &motion, StepSettings &settings);
 
-/// All settings as text, to the bit: part of the recipe of whatever they shape.
+/// All settings as text, bit for bit: part of the recipe of whatever they shape.
 std::string recipe_text(const MotionSpec &motion);
 } // namespace isostat

@@ -59,7 +59,7 @@ public:
           look_at_end(seen, *verdict.end);
         move(seen, finished);
         state_.place.steps += 1;
-        if (!finished && !observer_.after_step(assembly_, state_, seen)) // a finished stage is no state to go on from
+        if (!finished && !observer_.after_step(assembly_, state_, seen)) // no run can continue from a finished stage
           return RunOutcome::interrupted;
       }
     return RunOutcome::finished;

@@ -11,7 +11,7 @@ struct RecordSpec
 {
   double record_stress = 1e3;          ///< a history row whenever p' or the driven load has moved by this much, Pa
   double record_strain = 1e-4;         ///< ... or the driven strain by this much
-  std::uint64_t record_steps = 5000;   ///< ... or after so many steps
+  std::uint64_t record_steps = 5000;   ///< ... or after this many steps
   std::string snapshots = "reversals"; ///< "none", "reversals" (and stage ends), "strain"
   double snapshot_strain = 0.01;       ///< spacing for "strain"
 
@@ -29,7 +29,7 @@ struct Programme
   std::vector<Stage> stages = {};
 };
 
-/// Who watches a run. Observers never change it: trajectories are the same with output on or off.
+/// The observer of a run. Observers never change it: trajectories are the same with output on or off.
 class RunObserver
 {
 public:
@@ -48,15 +48,15 @@ enum class RunOutcome
   interrupted
 };
 
-/// Runs the stages from where `state` stands (a fresh state: from the first), one time step after the other:
+/// Runs the stages from where `state` is (a fresh state: from the first), one time step after the other:
 ///
 ///     time step -> contact forces -> stress -> stage (verdict, strain, servo, reversal) -> record -> motion, walls
 ///
 /// The specimen is bounded by walls or by a periodic cell, whose strain takes the place of wall motion.
 /// A stage ends with walls at rest for one step. The time step follows the critical step of the closed contacts
 /// (docs/theory.md) every 200 steps of a servo stage and every 2,000 of a shear stage; a fixed one is checked there.
-/// What a stage that shears is to keep is checked every 50 steps (dem/drive/control.hpp).
-/// @throws RunFailure  a stage that cannot reach its target; lost control if the scene wants it so; an unstable
+/// What a stage that shears must keep is checked every 50 steps (dem/drive/control.hpp).
+/// @throws RunFailure  a stage that cannot reach its target; lost control if the scene asks for it; an unstable
 ///         fixed time step; an exploding packing
 /// tested: tests/verification/programme_test.cpp, tests/hard/, tests/regression/
 RunOutcome run_programme(const Programme &programme, Assembly &assembly, DriveState &state, RunObserver &observer);

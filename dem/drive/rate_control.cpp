@@ -26,8 +26,8 @@ double strain_rate(const MotionSpec &motion, const Assembly &assembly, double p0
     return *motion.strain_rate;
   if (!(p0 > 0))
     throw RunFailure(
-        fmt::format("the specimen is to be sheared, but carries p' = {:.3g} Pa, and the rate of an inertial "
-                    "number goes with its root. Consolidate it first, or give motion.strain_rate.",
+        fmt::format("the specimen cannot be sheared: it carries p' = {:.3g} Pa, and the rate of an inertial number "
+                    "goes with its root. Consolidate it first, or give motion.strain_rate.",
                     p0));
   const double inertial_number = motion.inertial_number.value_or(controlled_inertial_number);
   return inertial_number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();

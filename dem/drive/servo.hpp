@@ -21,7 +21,7 @@ Vec3 servo_edges(const Assembly &assembly, const Vec3 &target, const std::array<
 /// the cell is strained by
 ///     D = 0.8 D' + 0.2 clamp((target - sigma)/M, +-cap)
 /// with M the affine modulus (all grains following the strain), which is above the true one: the servo is slow rather
-/// than unstable. It is looked at every 20 steps; shear counts 0.4 of the mean of the three, that of an isotropic net.
+/// than unstable. It is computed every 20 steps; shear counts 0.4 of the mean of the three, that of an isotropic net.
 /// @param target      stress, Pa, tension positive      @param controlled  symmetric; the other components get 0
 /// @param rate_cap    bound on the strain rate, 1/s     @param step_number  of the stage: when to look at M
 /// tested: tests/verification/cell_programme_test.cpp, tests/dem/rve/rve_test.cpp
@@ -34,7 +34,7 @@ using StaticComponents = Eigen::Vector4d;
 
 /// The next increment of a static drive: strains of the controlled components that bring their stresses to the targets,
 ///     K_cc d eps_c = target_c - sigma_c - K_cp d eps_p,
-/// beside those that are prescribed (p). K begins as three fifths of the affine stiffness and is corrected after each
+/// next to those that are prescribed (p). K begins as three fifths of the affine stiffness and is corrected after each
 /// increment so that it answers that one (Broyden 1965, Math. Comp. 19, 577, doi:10.1090/S0025-5718-1965-0198670-6).
 /// @param now  stresses as they are, Pa   @param prescribed  [-]   @param cap  on each strain, an amount [-]
 /// @param per_axial  targets change by so much with sigma_y: -1/2 where lateral stresses keep p' [-]

@@ -9,7 +9,7 @@ namespace isostat
 /// Sets assembly.settings.time_step and pace.time_step when a review is due (every 200 steps of a servo stage, 2,000 of
 /// a shear stage): safety times the bound of the critical step, or the scene's fixed step.
 /// @param step_number  of the stage
-/// @throws RunFailure when a fixed step exceeds the true critical step (power iteration; only looked at where the step
+/// @throws RunFailure when a fixed step exceeds the true critical step (power iteration; only checked where the step
 ///         is above the bound): the run would be unstable, not merely inaccurate
 /// tested: tests/verification/critical_step_test.cpp
 void update_time_step(const MotionSpec &motion, bool shearing, std::uint64_t step_number, Assembly &assembly,

@@ -18,7 +18,7 @@ namespace
 const std::string checkpoint_format = "isostat-checkpoint";
 // 8: no static drive; 7: only early ends, nothing about half cycles and pore pressure; 6: nothing about early ends,
 // rows by any component; 5: nothing about control, repeats and paths;
-// 4: no window of the slope; 3: no bound on the load rate; 2: no energy of free grains; 1: every number as double
+// 4: no window of the slope; 3: no bound on the load rate; 2: no energy of rattlers; 1: every number as double
 constexpr std::uint64_t checkpoint_schema_version = 9;
 
 Checkpoint read_file(const std::filesystem::path &path)

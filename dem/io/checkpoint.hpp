@@ -18,14 +18,14 @@ struct WrittenSoFar
   ISOSTAT_FIELDS(rows, snapshots, redundancy)
 };
 
-/// All that a killed run needs to go on to the same bits: grains with the history of their contacts (after a move), and
-/// what drivers, sums and recorders keep.
+/// All that a killed run needs to continue to the same bits: grains with the history of their contacts (after a move),
+/// and what drivers, sums and recorders keep.
 struct Checkpoint
 {
   Snapshot state;
   DriveState drive;
   WrittenSoFar written;
-  std::map<std::string, double> assembly; ///< sums of the energy balance, and what they go on from
+  std::map<std::string, double> assembly; ///< sums of the energy balance, and what they continue from
   std::map<std::string, double> specimen; ///< its figures (Specimen::numbers), for the summary of a resumed run
   std::string scene;                      ///< the resolved scene; a resumed run must have the same
   std::string instruction_set = {};       ///< of the machine that wrote it, for other_instruction_set(); set by reading
@@ -35,7 +35,7 @@ struct Checkpoint
 /// is whole at any moment. Throws RunFailure (disk full, not writable): the older ones survive.
 void write_checkpoint(const std::filesystem::path &folder, const Checkpoint &checkpoint);
 
-/// The newest readable checkpoint of a folder. A damaged last.h5 gives way to previous.h5.
+/// The newest readable checkpoint of a folder. Instead of a damaged last.h5 it is previous.h5.
 /// @throws InputError when there is none, naming what is wrong with each; a checkpoint of another schema is refused
 /// tested: tests/dem/io/checkpoint_test.cpp
 Checkpoint read_checkpoint(const std::filesystem::path &folder);

@@ -24,15 +24,15 @@ inline constexpr const char *snapshot_format = "isostat-snapshot"; ///< of a fil
 ///     @reference_volume @flips
 ///
 /// Padding records of the packing are not stored.
-/// tested: tests/dem/io/snapshot_file_test.cpp (round trip to the bit)
+/// tested: tests/dem/io/snapshot_file_test.cpp (round trip bit for bit)
 void write_snapshot(hdf5::Group group, const Snapshot &snapshot);
 
 /// The snapshot that write_snapshot stored; order of grains and contacts as stored, padding as make_packing makes it.
 /// Throws InputError if an item is missing, sizes disagree, or a contact names a grain or wall that does not exist.
-/// Values are not judged here: the snapshot of a failed run may well be looked at.
+/// Values are not judged here: the snapshot of a failed run may well be inspected.
 Snapshot read_snapshot(const hdf5::Group &group);
 
-/// A file of its own: format "isostat-snapshot", group `snapshot`. Written aside and renamed.
+/// A separate file: format "isostat-snapshot", group `snapshot`. Written aside and renamed.
 void write_snapshot_file(const std::filesystem::path &path, const Snapshot &snapshot);
 /// The group `snapshot` of any file that has one: a snapshot or a specimen. Files of columns written before there was a
 /// `schema_version` hold it in their root.

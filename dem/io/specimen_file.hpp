@@ -9,7 +9,7 @@
 
 namespace isostat
 {
-/// A prepared packing with the story of how it was made; the starting point of element tests and RVEs.
+/// A prepared packing and how it was made; the starting point of element tests and RVEs.
 struct Specimen
 {
   Snapshot state;
@@ -31,8 +31,8 @@ void write_specimen(const std::filesystem::path &path, const Specimen &specimen)
 /// the file, what was found, what was expected, and the remedy.
 Specimen read_specimen(const std::filesystem::path &path);
 
-/// The same in a group of an open file, without format and schema version, which are the file's: what a specimen
-/// library is made of (specimen_library.hpp). Writing: the group is empty.
+/// The same in a group of an open file, without format and schema version, which are the file's: as in a
+/// specimen library (specimen_library.hpp). Writing: the group is empty.
 void write_specimen(hdf5::Group group, const Specimen &specimen);
 Specimen read_specimen(const hdf5::Group &group);
 
@@ -41,6 +41,6 @@ Specimen read_specimen(const hdf5::Group &group);
 void expect_specimens(const hdf5::Group &root, const std::string &format, std::uint64_t version,
                       const std::string &remedy);
 
-/// Only what stands in attributes: `state` is left empty and not looked at.
+/// Only the attributes: `state` is left empty and not read.
 Specimen read_specimen_description(const hdf5::Group &group);
 } // namespace isostat

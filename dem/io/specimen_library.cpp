@@ -147,7 +147,7 @@ void LibraryWriter::add(const std::string &name, const Specimen &specimen)
                                  root.file_path().string(), name));
   if (root.has(name))
     throw InputError(
-        fmt::format("{}: there is an entry \"{}\" already; give another name", root.file_path().string(), name));
+        fmt::format("{}: an entry \"{}\" exists already; give another name", root.file_path().string(), name));
   write_specimen(root.create_group(name), specimen);
 }
 

@@ -23,7 +23,7 @@ fs::path find_table(const fs::path &folder, const std::string &what)
   for (const char *ending : {"", ".gz"})
     if (std::error_code ignored; fs::exists(folder / (name + ending), ignored))
       return folder / (name + ending);
-  throw InputError(fmt::format("{}: neither {} nor {}.gz is there; check the folder", folder.string(), name, name));
+  throw InputError(fmt::format("{}: neither {} nor {}.gz exists; check the folder", folder.string(), name, name));
 }
 
 RigidBox read_box(const fs::path &path)

@@ -13,7 +13,7 @@ namespace isostat
 ///     comp_contacts_step0    id1,id2,un,nx,ny,nz,kn,fn,fsx..z,mbx..z,mtx..z     force and moments on id2
 ///     comp_walls_step0       wall (0..5 = x-,x+,y-,y+,z-,z+),pos
 ///
-/// Columns may stand in any order; others are ignored. Units m, m/s, rad/s, N, N m. In the contact table the ids -1..-6
+/// Columns may be in any order; others are ignored. Units m, m/s, rad/s, N, N m. In the contact table the ids -1..-6
 /// are the walls x-..z+. Where `un` is nan the overlap is fn/kn. Rows with fn = 0 do not touch and are left out.
 /// Storage order of the grains is that of the table; contacts are sorted, and turned so that first < second.
 ///

@@ -56,8 +56,8 @@ struct ContactEnergy
   double normal = 0, shear = 0, rolling = 0, twisting = 0;
 };
 
-/// A contact law for spheres of one material: parameters and equations. Everything outside the folder of a law goes by
-/// this interface; one call does a whole chunk of contacts, so the loop over contacts knows its law at compile time.
+/// A contact law for spheres of one material: parameters and equations. Everything outside the folder of a law uses
+/// this interface; one call handles a whole chunk of contacts, so the loop over contacts knows its law at compile time.
 /// How to add one: CONTRIBUTING.md.
 /// tested: tests/dem/law/own_law_test.cpp (a law outside the library: loop, step, scene, files)
 struct ContactLaw
@@ -75,7 +75,7 @@ struct ContactLaw
   /// member<&MyLaw::parameter>. Names in files and bytes, keys of caches and equality of laws follow from this table.
   virtual std::span<const Key> keys() const = 0;
 
-  /// What the present parameters need to remember of a contact.
+  /// History that the present parameters need of a contact.
   virtual HistoryLayout history() const = 0;
   /// Forces of all pairs of one chunk, added up, history advanced: Loop<...>::run() of loop-inl.hpp.
   virtual void add_forces(const LoopView &view) const = 0;
@@ -105,7 +105,7 @@ protected:
   ContactLaw &operator=(const ContactLaw &) = default;
 };
 
-/// A law as a value: a copy has parameters of its own.
+/// A law as a value: a copy has its own parameters.
 class Law
 {
 public:
@@ -134,7 +134,7 @@ public:
     return dynamic_cast<const Concrete &>(*law_);
   }
 
-  bool operator==(const Law &other) const; ///< the same law with the same parameters, to the bit
+  bool operator==(const Law &other) const; ///< the same law with the same parameters, bit for bit
 
 private:
   std::unique_ptr<ContactLaw> law_;
@@ -147,7 +147,7 @@ std::vector<double> parameter_values(const ContactLaw &law);
 std::span<const Law> registered_laws();
 /// Adds a law, with the parameters that it has where a file leaves them out. @pre no scene has been read yet
 void register_law(const Law &law);
-/// @throws InputError  no law of that name: lists those that there are
+/// @throws InputError  no law of that name: lists the existing ones
 Law law_named(std::string_view name);
 /// The law of scenes and files that name none.
 bool is_default(const ContactLaw &law);

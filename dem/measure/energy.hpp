@@ -40,13 +40,13 @@ struct EnergyBalance
   double released = 0;        ///< elastic energy of fs, mb, mt forgotten when contacts open, >= 0
   double damping = 0;         ///< taken out by local damping, >= 0
   double contact_damping = 0; ///< taken out by dashpots in contacts, >= 0
-  double free_grains = 0;     ///< taken out by the damping of free grains
+  double free_grains = 0;     ///< taken out by the damping of rattlers
   double created = 0;         ///< by the law itself: it measures slip with arms R1, R2 but applies forces with R - u/2
 
   ISOSTAT_FIELDS(boundary_work, kinetic, elastic, sliding, rolling, released, damping, contact_damping, free_grains,
                  created)
   double dissipated() const { return sliding + rolling + released + damping + contact_damping + free_grains; }
-  /// boundary work + created = stored + dissipated (docs/theory.md, section 14). What is left over is the error of the
+  /// boundary work + created = stored + dissipated (docs/theory.md, section 14). The rest is the error of the
   /// time step.
   double residual() const { return boundary_work + created - (kinetic + elastic) - dissipated(); }
 };

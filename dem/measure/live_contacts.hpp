@@ -8,7 +8,7 @@
 
 namespace isostat
 {
-/// The contacts that are closed in a running assembly, looked at where they are: for measures that drivers take every
+/// The contacts that are closed in a running assembly, read where they are: for measures that drivers take every
 /// few steps, where a Snapshot would cost too much. Forces are those of the last evaluation.
 /// tested: tests/dem/assembly/assembly_test.cpp (against the measures of a Snapshot)
 struct LiveContacts

@@ -31,7 +31,7 @@ struct ContactConstraints
 
 ContactConstraints constraints_of(const ContactLaw &law);
 
-/// Degrees of freedom of a grain that contacts with so many constraints act on: 3 where they cannot turn a sphere.
+/// Degrees of freedom of a grain that contacts with this many constraints act on: 3 where they cannot turn a sphere.
 constexpr int freedoms(int constraints) { return constraints > 1 ? 6 : 3; }
 /// Coordination number at which the redundancy index is 1 if nothing yields.
 constexpr double isostatic_coordination(int constraints) { return 2.0 * freedoms(constraints) / constraints; }

@@ -213,7 +213,7 @@ Eigen::MatrixXd fluctuations(const std::vector<Element> &elements, const Unknown
   const SparseMatrix network = network_stiffness(elements, unknowns);
   if (unknowns.count() > most_factorised)
     {
-      // stiffness is evaluated as energy: what is left of the residual enters squared
+      // stiffness is evaluated as energy: what remains of the residual enters squared
       Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> iteration(network);
       iteration.setTolerance(1e-8);
       Eigen::MatrixXd motion = iteration.solve(load);

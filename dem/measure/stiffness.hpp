@@ -26,8 +26,8 @@ enum class Sliding
 ///
 /// eps: mean strain, symmetric, no mean rotation; u, w: what each grain's displacement and rotation differ from it; K:
 /// second derivatives of W. The shear force is that of the law; r in place of R makes a rigid rotation free of energy
-/// and K symmetric. Torques have the arm r, in the law R - u/2, the same for equal radii. Not done: forces that are
-/// there already turn with the normal (of the order of u/R against kn); the strength of a yielding contact follows its
+/// and K symmetric. Torques have the arm r, in the law R - u/2, the same for equal radii. Not done: existing
+/// forces turn with the normal (of the order of u/R against kn); the strength of a yielding contact follows its
 /// normal force, which makes a plastic stiffness unsymmetric.
 ///
 /// Grains with fewer than two contacts bear no load and are left out with their contact, again and again until none is
@@ -38,7 +38,7 @@ enum class Sliding
 /// Without friction there are no rotations among the unknowns.
 ///
 /// @pre  periodic: contacts with images of grains are among `contacts`, by their normal and overlap; positions are not
-///       looked at. history.normal is the normal, whatever the law
+///       used. history.normal is the normal, whatever the law
 /// @return symmetric, no negative eigenvalue beyond rounding, C <= affine_stiffness; zero without contacts
 /// @throws RunFailure  the snapshot has walls' contacts; the factorisation fails or something is not a number
 /// cost up to 1,500 grains a sparse LDL^T of 6 unknowns per grain, on one shared core 0.3 s for 1,000 grains at Z = 4.6
@@ -55,7 +55,7 @@ Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::el
 /// tested: tests/dem/measure/stiffness_test.cpp (cubic lattices, icosahedral directions)
 Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);
 
-/// Its first three diagonal entries, of an assembly at work: (1/V) sum l^2 n_k^2 (kn n_k^2 + ks (1 - n_k^2)), Pa, own
+/// Its first three diagonal entries, of a running assembly: (1/V) sum l^2 n_k^2 (kn n_k^2 + ks (1 - n_k^2)), Pa, own
 /// frame of a cell. What the servo of a cell divides by.   @param volume  m3     cost one pass over the contacts
 /// tested: tests/verification/cell_programme_test.cpp (the servo that uses it)
 Vec3 affine_moduli(const LiveContacts &contacts, double volume);
@@ -67,7 +67,7 @@ Vec3 affine_moduli(const LiveContacts &contacts, double volume);
 /// tested: tests/dem/assembly/assembly_test.cpp (against affine_stiffness)
 double affine_modulus(const LiveContacts &contacts, double volume, const Mat3 &gradient);
 
-/// What is left of C where only the strains of a soil column can occur: its direction a lengthens, and shears against
+/// What remains of C where only the strains of a soil column can occur: its direction a lengthens, and shears against
 /// the lateral directions b < c. Rows and columns: aa, ab, ac with engineering shear; for axis 2: zz, xz, yz.
 /// It is the acoustic tensor C_iaja in that order. @param axis  0, 1, 2 = x, y, z     @return Pa
 /// tested: tests/dem/measure/stiffness_test.cpp

@@ -37,7 +37,7 @@ struct DrainedStrength
   std::optional<double> dilatancy;                   ///< largest angle, degrees; in compression alone
 };
 
-/// @pre at least two rows, the strain runs one way     @throws nothing: of fewer rows all is zero
+/// @pre at least two rows, the strain is monotonic     @throws nothing: fewer rows give zero
 /// tested: tests/dem/measure/strength_test.cpp (closed forms)
 DrainedStrength drained_strength(const DrainedPath &path);
 } // namespace isostat

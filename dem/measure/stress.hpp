@@ -46,7 +46,7 @@ StressInvariants invariants(const Eigen::MatrixBase<Derived> &stress)
 /// tested: tests/dem/measure/stress_test.cpp (two spheres, rows between walls, rotation)
 Mat3 contact_stress(const Snapshot &snapshot);
 
-/// Its diagonal, of an assembly at work: 0.2 ms for 10,000 grains, cheaper than a snapshot.   @param volume  m3
+/// Its diagonal, of a running assembly: 0.2 ms for 10,000 grains, cheaper than a snapshot.   @param volume  m3
 /// tested: tests/dem/assembly/assembly_test.cpp (against the above)
 Vec3 contact_stress(const LiveContacts &contacts, double volume);
 
@@ -60,7 +60,7 @@ Vec3 wall_stress(const Snapshot &snapshot);
 ///     sigma_ij = -(1/V) sum_g m w_i w_j ,  w = v - v0 - L (x - x0)
 ///
 /// v0, x0: velocity and position of the centre of mass. Small against contact_stress while shearing is quasi-static.
-/// @param velocity_gradient  L_ij = dv_i/dx_j of the mean motion, 1/s; zero: only the mean velocity is taken off
+/// @param velocity_gradient  L_ij = dv_i/dx_j of the mean motion, 1/s; zero: only the mean velocity is subtracted
 /// @return (3,3) Pa, tension positive, symmetric, trace <= 0
 /// tested: tests/dem/measure/stress_test.cpp (two grains, affine motion)
 Mat3 kinetic_stress(const Snapshot &snapshot, const Mat3 &velocity_gradient = Mat3::Zero());

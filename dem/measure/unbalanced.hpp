@@ -16,7 +16,7 @@ namespace isostat
 /// tested: tests/dem/measure/unbalanced_test.cpp (row in balance and not, shear, floating grain, no contacts)
 double unbalanced_force(const Snapshot &snapshot);
 
-/// The same of an assembly at work.
+/// The same of a running assembly.
 /// @param action  [F 0 T 0] of each grain, N and N m, weight included     @param gravity  m/s2
 /// tested: tests/dem/assembly/assembly_test.cpp (against the above)
 double unbalanced_force(const LiveContacts &contacts, const double *action, const Vec3 &gravity);

@@ -170,7 +170,7 @@ double largest_eigenvalue(const Packing &packing, const std::vector<ElasticConta
     lambda[i] = std::max(0.1 * minimum, eigenvalue_bound(scaled_block(packing, i, alone[i])));
   const double max_alone = *std::max_element(lambda.begin(), lambda.end());
 
-  // only grains that could exceed the largest lambda with their neighbours' share are looked at again
+  // only grains that could exceed the largest lambda with their neighbours' share are checked again
   std::vector<double> neighbour(packing.n_grains(), 0.0);
   for (const ElasticContact &e : elements)
     {
@@ -193,7 +193,7 @@ double largest_eigenvalue(const Packing &packing, const std::vector<ElasticConta
   return maximum;
 }
 
-/// Rayleigh quotient of M^-1/2 K M^-1/2 after so many power iterations: its largest eigenvalue, from below.
+/// Rayleigh quotient of M^-1/2 K M^-1/2 after this many power iterations: its largest eigenvalue, from below.
 double power_iteration(const Packing &packing, const std::vector<ElasticContact> &elements,
                        const std::vector<Vec3> &held, int iterations)
 {

@@ -3,8 +3,8 @@
 
 namespace isostat
 {
-/// Damping of free grains: those on which neither force nor torque acts, because no contact carries anything and there
-/// is no gravity. Local damping does nothing to them, so that they would fly on for ever and knock at the packing; in
+/// Damping of rattlers: grains on which neither force nor torque acts, because no contact carries anything and there
+/// is no gravity. Local damping does nothing to them, so that they would fly on forever and knock at the packing; in
 /// nature gravity and water lay them to rest. In each step, before it,
 ///
 ///     v' <- (1 - c) v',   w <- (1 - c) w

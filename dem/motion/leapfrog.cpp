@@ -17,9 +17,9 @@ using V4 = hn::Vec<D4>;
 
 struct Advance
 {
-  double dt, damping, kept; ///< kept: share of its velocity that a free grain keeps in a step
+  double dt, damping, kept; ///< kept: share of its velocity that a rattler keeps in a step
 
-  /// The velocity of a free grain; the record's fourth lane stays. Adds to `loss` if asked.
+  /// The velocity of a rattler; the record's fourth lane stays. Adds to `loss` if asked.
   template <bool Measure>
   HWY_INLINE V4 slowed(V4 v, std::size_t half, V4 inverse_mass, V4 &loss) const
   {

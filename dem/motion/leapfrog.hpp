@@ -12,7 +12,7 @@ struct MotionReport
   double max_speed = 0;    ///< m/s
   bool exploded = false;   ///< a grain moves or spins at no number, or faster than the limit
   double damping_loss = 0; ///< J, only where asked for
-  double free_loss = 0;    ///< J that the damping of free grains takes, only where asked for
+  double free_loss = 0;    ///< J that the damping of rattlers takes, only where asked for
   double carried_work = 0; ///< J that carried grains have gained from the walls' homogeneous motion, where asked for
 };
 

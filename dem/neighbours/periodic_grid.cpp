@@ -98,7 +98,7 @@ struct Partner
   ImageCode image;
 };
 
-/// A grid row beside another one, through the face of the cell or not.
+/// A grid row next to another one, through the face of the cell or not.
 struct Neighbour
 {
   int at, shift;
@@ -118,7 +118,7 @@ ImageCode image_of_pair(const WrappedCells &cells, std::uint32_t i, std::uint32_
   if (image.cwiseAbs().maxCoeff() > max_image)
     throw RunFailure(
         fmt::format("grains {} and {} are neighbours through {} edges of the periodic cell; at most {} can "
-                    "be told apart. Start from a packing whose grains are in its cell.",
+                    "be distinguished. Start from a packing whose grains are in its cell.",
                     i, j, image.cwiseAbs().maxCoeff(), max_image));
   return image_code(image);
 }

@@ -11,7 +11,7 @@ namespace isostat
 double max_reach(const Packing &packing);
 
 /// All pairs of a periodic packing whose surfaces are closer than `skin`, sorted by (first, second), each with the
-/// shift of the second grain's nearest image: |x2 + edges shift - x1| < R1 + R2 + skin. Grains may stand anywhere, not
+/// shift of the second grain's nearest image: |x2 + edges shift - x1| < R1 + R2 + skin. Grains may be anywhere, not
 /// only inside the cell. Found with a grid along the most compact periods of the lattice, whose rows wrap around;
 /// shifts count the given edges, which may lean as they like.
 /// @param edges  columns, m     @param skin  m, >= 0

@@ -13,7 +13,7 @@ namespace isostat
 ///
 /// Two skins: a wide list of candidates, found with the cell grid now and then, and a tight list of those that touch or
 /// nearly touch, chosen from it often, which is what the loop runs over. A cheap bound on what grains and walls have
-/// moved is summed every step; when it uses up the slack, the true displacements are looked at, both as they are and
+/// moved is summed every step; when it uses up the slack, the true displacements are checked, both as they are and
 /// less the box's homogeneous strain, and only if neither fits in the skin is the list made again. The tight skin
 /// follows the flow: it widens when it is used up soon and shrinks when it lasts. Results do not depend on it (see
 /// ContactList).

@@ -14,7 +14,7 @@ constexpr double compressed_balance = 2e-3, rebalanced = 2e-4, at_rest = 5e-5;
 constexpr int rest_attempts = 5; // a packing on the verge can collapse while its walls are held
 constexpr double k0_start = 0.1; // of the vertical stress: isotropic pressure from which K0 consolidation begins
 
-/// Runs a stage on a state and returns what it ends with. Free grains are not damped: a cloud consists of them.
+/// Runs a stage on a state and returns what it ends with. Rattlers are not damped: a cloud consists of them.
 Snapshot run_stage(const Snapshot &initial, const Stage &stage, double damping, const Preparation &how)
 {
   const Programme programme{
@@ -33,7 +33,7 @@ Snapshot run_stage(const Snapshot &initial, const Stage &stage, double damping, 
   return end;
 }
 
-/// Free grains fly on for ever, local damping only acts on forces: they would knock on an element that ought to rest.
+/// Rattlers fly on forever, because local damping only acts on forces: they would disturb an element that should rest.
 void stop_grains(Packing &grains)
 {
   for (std::size_t i = 0; i < grains.n_grains(); ++i)

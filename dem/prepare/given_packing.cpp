@@ -97,7 +97,7 @@ void check_stiffness(const Scene &scene, const Snapshot &state, const std::strin
 
 /// Whether a scene says a value, which is then held against the packing: one that it leaves out is not. Where a program
 /// gives the packing, the scene has been through to_toml(), which writes all keys: there a default counts as left out.
-/// Consolidation beside a file can be its default only.
+/// Consolidation with a file can be its default only.
 bool is_said(const Scene &scene, std::string_view key, bool is_default)
 {
   return scene.specimen.file.empty() ? !is_default : scene.written.has(key);

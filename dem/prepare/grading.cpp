@@ -56,7 +56,7 @@ GradingCurve checked_table(const std::vector<std::pair<double, double>> &table)
       if (!(percent >= 0 && percent <= 100))
         throw InputError(
             fmt::format("grading.table[{}]: percent finer = {:g}; must be in [0, 100] because it is a part "
-                        "of the mass. Percent, not a fraction, is meant here.",
+                        "of the mass. Give percent, not a fraction.",
                         i, percent));
       if (percent < finer_percent)
         throw InputError(
@@ -97,7 +97,7 @@ Cut effective_cut(const GradingSpec &spec, const GradingCurve &given)
                                  "by mass, above finest_percent. 100 keeps the coarsest grains.",
                                  coarse, fine));
   const Cut cut = {std::max(fine, given.percent_finer.front()), std::min(coarse, given.percent_finer.back())};
-  if (!(cut.coarse - cut.fine > 1e-9)) // less cannot be told from round-off
+  if (!(cut.coarse - cut.fine > 1e-9)) // less cannot be distinguished from round-off
     throw InputError(fmt::format("grading: nothing is left between finest_percent = {:g} and coarsest_percent = {:g}; "
                                  "the points of the curve cover {:g} ... {:g} %. Widen the cut.",
                                  fine, coarse, given.percent_finer.front(), given.percent_finer.back()));

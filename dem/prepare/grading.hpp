@@ -24,7 +24,7 @@ struct GradingCurve
 
 /// The curve a scene asks for: built-in or table, cut to [finest_percent, coarsest_percent] and rescaled to 0 ... 100
 /// %. Mass below the first given point has no size (Karlsruhe fine sand: 1.53 % below 0.0631 mm): it is left out as if
-/// finest_percent stood there; likewise above a last point under 100 %. `table` goes before `curve`.
+/// finest_percent were there; likewise above a last point under 100 %. `table` goes before `curve`.
 /// Karlsruhe fine sand; as given d50 = 0.137 mm and Cu = 1.52 (nominal 0.14 mm and 1.5).
 /// @throws InputError  unknown name (the known ones are listed); table with fewer than two points, diameters that are
 ///         not positive and rising, percentages outside [0, 100] or falling; a cut outside [0, 100] or without mass

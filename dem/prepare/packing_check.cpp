@@ -87,7 +87,7 @@ std::string figures_text(const PackingFigures &f, const Snapshot &s)
 {
   const bool leans = s.cell && !Mat3(s.cell->edges).isDiagonal(1e-12);
   const std::string overlap =
-      !f.overlaps_known ? "not looked at: the cell repeats itself within two of its grains"
+      !f.overlaps_known ? "not checked: the cell repeats itself within two of its grains"
       : f.overlap > 0   ? fmt::format("{:.3g} % of the radius, grains {} and {}", 100 * f.overlap, f.first, f.second)
                         : "none";
   return fmt::format("  grains           {}\n  d50              {:.4g} mm\n  diameters        {:.4g} to {:.4g} mm\n"
@@ -104,8 +104,8 @@ std::vector<std::string> check_packing(const Snapshot &s, const std::string &fil
   const double r_max = s.grains.max_radius();
   if (r_max > largest)
     throw InputError(fmt::format(
-        "{}: the largest radius is {:.4g} m; expected at most {} m, because it is soil that is "
-        "meant. Are its lengths in {}? If so, {}.{}",
+        "{}: the largest radius is {:.4g} m; expected at most {} m for soil. "
+        "Are its lengths in {}? If so, {}.{}",
         file, r_max, largest, likely_unit(r_max), remedy(likely_unit(r_max)),
         largest < largest_radius
             ? fmt::format(" If they are in m, {}: radii up to {} m are then allowed.", remedy("m"), largest_radius)
@@ -128,7 +128,7 @@ std::vector<std::string> check_packing(const Snapshot &s, const std::string &fil
                     file, f.first, f.second, 100 * f.overlap, f.n_deep, 100 * too_deep));
   if (f.beyond_wall > too_deep)
     throw InputError(
-        fmt::format("{}: grain {} stands beyond a wall of the box by {:.3g} % of its radius; expected at most "
+        fmt::format("{}: grain {} reaches beyond a wall of the box by {:.3g} % of its radius; expected at most "
                     "{} %. Is it the box of this packing, in the unit of the positions?",
                     file, f.outermost, 100 * f.beyond_wall, 100 * too_deep));
   std::vector<std::string> warnings;
@@ -139,7 +139,7 @@ std::vector<std::string> check_packing(const Snapshot &s, const std::string &fil
                     f.first, f.second, 100 * f.overlap));
   if (!s.cell && is_roomy(s))
     warnings.emplace_back(
-        "The box is more than twice as wide as the packing in it: walls of other codes often stand inside "
+        "The box is more than twice as wide as the packing in it: walls of other codes are often inside "
         "the simulation box. Correct the box if they do.");
   return warnings;
 }

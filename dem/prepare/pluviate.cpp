@@ -76,7 +76,7 @@ public:
   {
     const Vec3 c = packing.centre(grain) - box_.lower;
     const double r = packing.radius(grain), at[2] = {c[0], c[2]};
-    int first[2], last[2]; // the axis stands in the middle of its column
+    int first[2], last[2]; // the axis is in the middle of its column
     for (int k = 0; k < 2; ++k)
       {
         first[k] = static_cast<int>(std::max(0.0, std::ceil((at[k] - r) / step_[k] - 0.5)));

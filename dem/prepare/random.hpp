@@ -11,7 +11,7 @@ namespace isostat
 enum class RandomStream : std::uint64_t
 {
   cloud = 1,   ///< grain positions of the random cloud; counter = grain, sub-counter = attempt
-  packings = 2 ///< which packings a point of soil has; seed = lot, counters = its place
+  packings = 2 ///< which packings a point of soil has; seed = number of the draw, counters = its place
 };
 
 /// Four numbers uniform in [0, 1), multiples of 2^-53, from the counter-based generator Philox 4x64, 10 rounds.

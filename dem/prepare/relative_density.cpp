@@ -81,8 +81,8 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, do
     return search.best;
   if (at_near * at_other > 0)
     throw InputError(fmt::format(
-        "specimen density cannot be reached: void ratio {:.4f} was asked for, but isotropic "
-        "compression {} gives {:.4f}, the {} there is. Choose a {} density, or another grading or pressure.{}",
+        "specimen density cannot be reached: void ratio {:.4f} was requested, but isotropic "
+        "compression {} gives {:.4f}, the {} possible. Choose a {} density, or another grading or pressure.{}",
         target, other == 0 ? "without friction" : "with 60 deg of friction", target + at_other,
         other == 0 ? "densest" : "loosest", other == 0 ? "lower" : "higher",
         other == 0 && how.specimen.domain == "rigid-box"

@@ -107,7 +107,7 @@ void check_width(const Scene &scene, const Packing &grains)
   const double width = std::cbrt(grains.solid_volume() * (1 + e));
   if (width < least)
     throw InputError(
-        fmt::format("grading.grains = {}: a periodic cell of so few is some {:.3g} mm wide; must be above {:.3g} mm "
+        fmt::format("grading.grains = {}: a periodic cell of this size is some {:.3g} mm wide; must be above {:.3g} mm "
                     "because a grain of {:.3g} mm would touch another one and its image at once. Take {} or more, or "
                     "a narrower grading.",
                     grains.n_grains(), 1e3 * width, 1e3 * least, 2e3 * grains.max_radius(),
@@ -206,7 +206,7 @@ void note_limits(const Scene &scene)
                     *scene.specimen.e_min, *scene.specimen.e_max, other));
 }
 
-/// Keeps it in the cache. The run has its specimen: that the cache cannot be written is said, and no reason to end it.
+/// Keeps it in the cache. The run has its specimen: a cache that cannot be written is a warning, no reason to end it.
 void keep(const Specimen &specimen, const std::filesystem::path &path, RunObserver &observer)
 {
   try
@@ -222,7 +222,7 @@ void keep(const Specimen &specimen, const std::filesystem::path &path, RunObserv
     }
 }
 
-/// What the cache holds of the recipe; a damaged file is as good as none, since it is made anew.
+/// What the cache holds of the recipe; a damaged file is treated as missing: the specimen is prepared again.
 std::optional<Specimen> from_cache(const std::filesystem::path &path, const std::string &recipe, RunObserver &observer)
 {
   if (!std::filesystem::exists(path))
@@ -235,7 +235,7 @@ std::optional<Specimen> from_cache(const std::filesystem::path &path, const std:
   catch (const InputError &error)
     {
       observer.event(
-          fmt::format("the specimen is prepared anew, because the one in the cache is damaged: {}", error.what()));
+          fmt::format("the specimen is prepared again, because the one in the cache is damaged: {}", error.what()));
       return {};
     }
 }
@@ -251,7 +251,7 @@ std::string specimen_recipe(const Scene &scene)
   recipe.specimen.cache = SpecimenSpec{}.cache;
   const int version = scene.specimen.domain == "periodic-cell" ? cell_recipe_version : recipe_version;
   const std::string text = to_toml(recipe);
-  // the sections behind those of the specimen stand at their defaults: a key more there is no other specimen
+  // the sections behind those of the specimen have their defaults: a key more there is no other specimen
   return fmt::format("# recipe {}\n{}", version, text.substr(0, text.find("[motion]")));
 }
 
@@ -282,7 +282,7 @@ Specimen obtain_specimen(const Scene &scene, const std::filesystem::path &cache,
     {
       observer.event("specimen taken from " + path.string());
       cached->provenance["consolidation"] = scene.specimen.consolidation;
-      describe(scene, *cached); // an older version may have told less
+      describe(scene, *cached); // an older version may have kept less
       note_void_ratio(scene, *cached);
       return *cached;
     }

@@ -11,7 +11,7 @@
 /// Sign      strain and stress: tension positive. Stress is the Cauchy effective stress, Pa.
 /// Vectors   of 6: xx, yy, zz, yz, xz, xy. Strains in this form have engineering shear, gamma = 2 eps.
 /// Matrices  of 9 or 36 numbers: row by row. A Fortran program hands over transpose(gradient).
-/// Returns   an isostat_status; what goes wrong is told by isostat_rve_error(). No function ends the program or lets an
+/// Returns   an isostat_status; isostat_rve_error() says what went wrong. No function ends the program or lets an
 ///           exception out. A null pointer is bad input unless the function allows it.
 /// Threads   elements are independent; one element, or one state, is for one thread at a time.
 ///
@@ -32,8 +32,8 @@ typedef enum isostat_status
 {
   ISOSTAT_OK = 0,
   ISOSTAT_REJECTED = 1,  ///< an increment that cannot be taken: the element is as before. Divide it
-  ISOSTAT_BAD_INPUT = 2, ///< a mistake in what was given; the element is as before
-  ISOSTAT_FAILURE = 3 ///< anything else: no memory, a factorisation that fails; restore the element before it goes on
+  ISOSTAT_BAD_INPUT = 2, ///< bad input; the element is as before
+  ISOSTAT_FAILURE = 3 ///< anything else: no memory, a factorisation that fails; restore the element before it continues
 } isostat_status;
 
 typedef struct isostat_rve isostat_rve;             ///< an element
@@ -47,7 +47,7 @@ typedef struct isostat_rve_settings
   double damping;         ///< local damping in [0, 1), default 0.2
   double frame[9];        ///< axes of the specimen in the laboratory, a rotation: x_lab = frame x_specimen
   double max_increment;   ///< size of the displacement gradient that one call takes, in (0, 0.1], default 0.01
-  uint64_t min_steps;     ///< time steps that an increment is spread over at least, default 1
+  uint64_t min_steps;     ///< least number of time steps of an increment, default 1
   uint64_t max_steps;     ///< of one call, default 10,000,000
 } isostat_rve_settings;
 
@@ -74,7 +74,7 @@ void isostat_rve_default_settings(isostat_rve_settings *settings);
 /// @return bad input: no such file, a packing in a box, settings out of range. Failure: a cell too narrow
 isostat_status isostat_rve_create(const char *specimen, const isostat_rve_settings *settings, isostat_rve **rve);
 
-/// Gives the memory back. Null is allowed. The handle is not to be used again.
+/// Gives the memory back. Null is allowed. Do not use the handle again.
 void isostat_rve_destroy(isostat_rve *rve);
 
 /// Strains the element by a displacement gradient relative to its present shape, F <- (I + H) F.
@@ -88,7 +88,7 @@ isostat_status isostat_rve_undrained(isostat_rve *rve, const double *gradient, i
 
 /// Prescribed strain in some components, target stress in the others: drained, K0, constant p' and other tests.
 /// @param gradient  as above; its symmetric part is 0 in components whose stress is controlled
-/// @param stress  targets, Pa (6); looked at where controlled
+/// @param stress  targets, Pa (6); used where controlled
 /// @param controlled  0: strain is prescribed, else stress (6)
 /// @param tolerance  |stress - target| / max(p', 0.05 p0') at the end, > 0; 1e-3 is usual
 /// @return as isostat_rve_advance(); rejected, too, where the frame is not the identity, the target needs tension, or a
@@ -111,15 +111,15 @@ isostat_status isostat_rve_void_ratio(const isostat_rve *rve, double *void_ratio
 /// @param water  density of the water, kg/m3, >= 0
 isostat_status isostat_rve_densities(const isostat_rve *rve, double water, double *dry, double *saturated);
 
-/// Time steps since the element was made, rejected increments not counted; goes on through pack and unpack, and is not
-/// turned back by isostat_rve_restore().
+/// Time steps since the element was made, rejected increments not counted; continues through pack and unpack, and is
+/// not turned back by isostat_rve_restore().
 isostat_status isostat_rve_steps(const isostat_rve *rve, uint64_t *steps);
 
 /// Copies the element's state: about 15 numbers a grain and 13 a contact.
 /// @param state  in: null, or a state that is written over; out: the handle
 isostat_status isostat_rve_save(const isostat_rve *rve, isostat_rve_state **state);
 
-/// Brings the element back to a state of its own, or of an element with the same grains and law, to the bit.
+/// Brings the element back to a state of its own, or of an element with the same grains and law, bit for bit.
 /// @return bad input: a state of other grains
 isostat_status isostat_rve_restore(isostat_rve *rve, const isostat_rve_state *state);
 
@@ -129,7 +129,7 @@ void isostat_rve_state_destroy(isostat_rve_state *state);
 /// The whole element as bytes, for restart files and other processes on the same type of machine.
 /// @param bytes  null: only the size is asked for
 /// @param size  in: bytes there is room for (where bytes is not null); out: bytes of the element as it is now
-/// @return bad input: no room; `size` is what it takes
+/// @return bad input: no room; `size` is what it needs
 isostat_status isostat_rve_pack(const isostat_rve *rve, void *bytes, size_t *size);
 
 /// Makes the element that isostat_rve_pack() gave, with the same bits, if the settings are the same.

@@ -19,7 +19,7 @@ struct RveSettings
   /// which accuracy matters take less, as columns do (1e-4, docs/results/column_error.md).
   MotionSpec motion = {};
   Mat3 frame = Mat3::Identity(); ///< axes of the specimen in the laboratory, a rotation: x_lab = frame x_specimen
-  /// Time steps that an increment is spread over at least. An element whose increments are small would otherwise take
+  /// Least number of time steps of an increment. An element whose increments are small would otherwise take
   /// each in a step or two, without time for its grains to find their places.
   std::uint64_t min_steps = 1;
   std::optional<StaticStepping> stepping = {}; ///< if given, of `motion` only the time step counts
@@ -170,6 +170,6 @@ private:
   RveState safe_;
   std::vector<Mat3> since_safe_;
   Balance balance_;           ///< of the last increment
-  bool rolling_back_ = false; ///< nobody is asked whether to go on
+  bool rolling_back_ = false; ///< no callback is asked whether to continue
 };
 } // namespace isostat

@@ -84,13 +84,13 @@ void check_pressure(const SceneDocument &document, const Scene &scene)
 }
 
 /// The pressure of the isotropic consolidation after which a stage begins for the first time, Pa; none: it begins after
-/// something else, or the scene does not tell.
+/// something else, or the scene does not say.
 std::optional<double> isotropic_before(const Scene &scene, std::size_t stage)
 {
   while (stage-- > 0)
     if (const auto *servo = as<ServoStage>(scene.stages[stage]))
       return servo->isotropic_pressure(scene.specimen.pressure);
-    else if (behaviour(scene.stages[stage]).takes_steps()) // a repeat ends with what stands before it
+    else if (behaviour(scene.stages[stage]).takes_steps()) // a repeat ends with what comes before it
       return std::nullopt;
   const bool prepared = scene.specimen.file.empty() && scene.specimen.consolidation == "isotropic";
   return prepared ? std::optional(scene.specimen.pressure) : std::nullopt;

@@ -71,7 +71,7 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
       {
         const std::string key = fmt::format("stage.{}.table", i);
         stage->file = found_file(document, key, path, stage->file);
-        static_cast<void>(stage->table()); // what is wrong with it is told before any work
+        static_cast<void>(stage->table()); // what is wrong with it is reported before any work
         if (stage->needs_cell() && scene.specimen.domain != "periodic-cell")
           document.refuse(
               key, "prescribes shear, which needs the periodic cell. Give domain = \"periodic-cell\" in [specimen].");

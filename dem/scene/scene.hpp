@@ -30,7 +30,7 @@ struct GradingSpec
   bool operator==(const GradingSpec &) const = default;
 };
 
-/// The edge of a cloud that a scene leaves out, m: so many grains are as large as 10,000 of them in 10 mm.
+/// The edge of a cloud that a scene leaves out, m: this many grains are as large as 10,000 of them in 10 mm.
 double usual_cloud_edge(std::uint64_t grains);
 
 /// Densities of grains, kg/m3, that scenes and files of packings may have: 2.65 is meant in g/cm3, 2.65e6 in g/m3.
@@ -46,7 +46,7 @@ struct SpecimenSpec : ServoSpec
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
   std::string file;                           ///< a specimen or snapshot (.h5), or "library.h5#entry"
   /// Limits that define the relative density: those of Karlsruhe fine sand as the paper's packings have them. A grading
-  /// of one's own, and a packing from a file, have none unless they are given.
+  /// of the user, and a packing from a file, have none unless they are given.
   std::optional<double> e_min = 0.568, e_max = 0.841;
   double density_tolerance = 0.01; ///< on D_r
   double damping = 0.3;            ///< local damping during preparation
@@ -56,7 +56,7 @@ struct SpecimenSpec : ServoSpec
   bool operator==(const SpecimenSpec &) const = default;
 };
 
-/// What to do where a relative density is asked for without its limits; of messages.
+/// Remedy in messages for a relative density without its limits.
 inline constexpr const char *no_limits =
     "needs e_min and e_max of this grading; those of Karlsruhe fine sand hold for no other. Find them with "
     "void_ratio_limits and give specimen.e_min and specimen.e_max, or give void_ratio or preparation_friction instead.";
@@ -122,10 +122,10 @@ struct Scene
 Scene read_scene(const std::string &path, const std::vector<std::string> &overrides = {});
 
 /// The same from text; `name` stands for the file in messages, empty as in SceneDocument. Does not touch the disk:
-/// specimen.file is not looked for, and an output folder left out stays empty.
+/// specimen.file is not searched for, and an output folder left out stays empty.
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides = {});
 
-/// The scene as a complete TOML file: every key with its value and unit. parse_scene(to_toml(s)) equals s to the bit
+/// The scene as a complete TOML file: every key with its value and unit. parse_scene(to_toml(s)) equals s bit for bit
 /// for every s that read_scene or parse_scene returned: numbers are written with the digits that bring them back,
 /// friction as degrees, or as "0.3 tan" where no decimal number of degrees has that tangent. Not kept, because it has
 /// no effect: the value of a switched-off part of the law, of a key that another one excludes, of a stage key foreign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys of a scene file. Those of the contact laws, of the motion and of each kind of stage stand beside their
+// The keys of a scene file. Those of the contact laws, of the motion and of each kind of stage are next to their
 // structs and are spliced in. A new one of the others is an entry here and a member in dem/scene/scene.hpp. Rules that
 // bind several keys are in dem/scene/checks.cpp.
 #include "dem/scene/schema.hpp"
@@ -20,24 +20,21 @@ constexpr const char *snapshot_choices[] = {"none", "reversals", "strain"};
 
 constexpr Section fixed_sections[] = {
     {.name = "grading",
-     .text =
-         "Grain sizes and the random cloud of non-overlapping spheres the specimen starts from. The largest grain that "
-         "is made may be 300 mm across, the smallest 2 um."},
+     .text = "Grain sizes and the random cloud of non-overlapping spheres the specimen starts from. Grains must be "
+             "between 2 um and 300 mm across."},
     {.name = "contact",
-     .text = "The contact law. What is left out here costs nothing: without `friction` the contacts are frictionless, "
+     .text = "The contact law. A part that is left out costs nothing: without `friction` contacts are frictionless, "
              "without the table `rolling` or `twisting` that part of the law is not compiled into the loop that runs."},
     {.name = "specimen",
-     .text = "How the specimen is made. Exactly one of `relative_density`, `void_ratio`, `preparation_friction` and "
-             "`file` is to be given."},
+     .text = "How the specimen is made. Give exactly one of `relative_density`, `void_ratio`, `preparation_friction` "
+             "and `file`."},
     {.name = "motion",
      .text =
          "Equations of motion and their time step. The rate of loading follows from an inertial number, or is fixed."},
     {.name = "control",
-     .text = "When a stage that shears counts as out of control: stresses that it is to keep (drained and constant-p: "
-             "the lateral "
-             "ones; path: all that are prescribed) off their targets, or too much inertia. Stage, quantity, target and "
-             "worst "
-             "value are told in the summary and on the terminal."},
+     .text = "A stage that shears is out of control when a stress that it keeps (drained and constant-p: the lateral "
+             "ones; path: all that are prescribed) is off its target, or when inertia is too large. The summary and "
+             "the terminal report stage, quantity, target and worst value."},
     {.name = "stage",
      .text =
          "The programme: every `[[stage]]` is one step of the test, in the order of the file. Without any, the scene "
@@ -77,12 +74,12 @@ constexpr Key grading_keys[] = {
    .reason = "because one grain makes no packing and more do not fit in memory", .text = "Number of spheres."},
   {.path = "cloud_edge", .field = member<&GradingSpec::cloud_edge>, .unit = unit::mm, .value = "10 mm",
    .range = positive, .group = "grain_size",
-   .text = "Edge of the cube that holds the cloud; excludes `d50`. Left out, that in which so many grains are as large "
-           "as 10,000 of them in 10 mm."},
+   .text = "Edge of the cube that holds the cloud; excludes `d50`. Left out: grains are as large as those of 10,000 "
+           "in 10 mm."},
   {.path = "d50", .field = member<&GradingSpec::d50>, .unit = unit::mm, .presence = Presence::optional,
    .value = "0.45 mm", .range = positive, .group = "grain_size",
-   .text = "Median diameter by mass of the grains that are made, whatever their number: the curve keeps its shape, and "
-           "the edge of the cube follows. Excludes `cloud_edge`."},
+   .text = "Median diameter by mass of the grains, whatever their number: the curve keeps its shape, and the edge of "
+           "the cube follows. Excludes `cloud_edge`."},
   {.path = "solid_fraction", .field = member<&GradingSpec::solid_fraction>, .value = "0.33", .range = {0, 0.5, true},
    .reason = "because a denser cloud cannot be filled at random",
    .text = "Solid volume of the cloud over that of its cube; with the edge it sets by how much the grains are scaled "
@@ -107,21 +104,21 @@ constexpr Key specimen_keys[] = {
            "most a twentieth of the modulus of contacts, which for the linear law is `young`."},
   {.path = "relative_density", .field = member<&SpecimenSpec::relative_density>, .presence = Presence::experiment,
    .value = "0.64", .range = {0, 1}, .reason = "because D_r is 0 at e_max and 1 at e_min", .group = "preparation",
-   .text = "D_r = (e_max-e)/(e_max-e_min) to be reached; the preparation friction is searched for."},
+   .text = "Target D_r = (e_max-e)/(e_max-e_min); a search finds the preparation friction."},
   {.path = "void_ratio", .field = member<&SpecimenSpec::void_ratio>, .presence = Presence::optional, .value = "0.67",
    .range = {0, 3, true}, .reason = "because a packing of spheres in contact has no other", .group = "preparation",
-   .text = "Void ratio e to be reached; the preparation friction is searched for."},
+   .text = "Target void ratio e; a search finds the preparation friction."},
   {.path = "preparation_friction", .field = member<&SpecimenSpec::preparation_friction>, .unit = unit::deg,
    .presence = Presence::optional, .value = "10 deg", .range = right_angle, .reason = because_tan,
-   .group = "preparation", .text = "Angle of friction while it is compressed; the density is what comes out."},
+   .group = "preparation", .text = "Angle of friction while it is compressed; the density is the result."},
   {.path = "file", .field = member<&SpecimenSpec::file>, .presence = Presence::optional, .value = "specimens/dr64.h5",
    .group = "preparation",
-   .text = "A prepared specimen or a snapshot (.h5), or one of a library of specimens (\"library.h5#s0007\"); packings "
-           "of other programs: `isostat convert FILE packing.h5`. Counts from the folder of the scene file or else "
-           "from the working directory."},
+   .text = "A prepared specimen or a snapshot (.h5), or an entry of a library of specimens (\"library.h5#s0007\"). "
+           "Convert packings of other programs with `isostat convert FILE packing.h5`. The path is relative to the "
+           "folder of the scene file, or else to the working directory."},
   {.path = "e_min", .field = member<&SpecimenSpec::e_min>, .value = "0.568", .range = positive,
-   .text = "Void ratio at D_r = 1. The default is that of the paper's packings of Karlsruhe fine sand; no default with "
-           "`table` or `file`. Below `e_max`; both are given or neither."},
+   .text = "Void ratio at D_r = 1. The default is that of the paper's packings of Karlsruhe fine sand; no default "
+           "with `table` or `file`. Below `e_max`; give both or neither."},
   {.path = "e_max", .field = member<&SpecimenSpec::e_max>, .value = "0.841", .range = positive,
    .text = "Void ratio at D_r = 0. The default is that of the paper's packings of Karlsruhe fine sand; no default with "
            "`table` or `file`."},
@@ -131,7 +128,7 @@ constexpr Key specimen_keys[] = {
    .reason = because_damping, .text = "Local damping coefficient during preparation."},
   {.path = "compaction_rate", .field = member_of<SpecimenSpec, &SpecimenSpec::compaction_rate>, .unit = unit::per_s,
    .value = "60 1/s", .range = positive,
-   .text = "Ceiling of the strain rate at which the cloud is compacted; half of it from half of the pressure on."},
+   .text = "Largest strain rate of compaction; half of it once half of the pressure is reached."},
   {.path = "cache", .field = member<&SpecimenSpec::cache>, .value = "specimens",
    .text = "Folder of prepared specimens, counted from the parent of the output folder."},
 };
@@ -148,7 +145,7 @@ constexpr Key output_keys[] = {
            "in a path that turns at a strain by 1/25 of that if it is less; in a path that drives nothing whenever any "
            "stress has moved by `record_stress` or any strain by this much."},
   {.path = "record_steps", .field = member_of<OutputSpec, &OutputSpec::record_steps>, .value = "5000",
-   .range = {1, 1e18}, .text = "A row of the history is due after so many time steps at the latest."},
+   .range = {1, 1e18}, .text = "A row of the history is due after this many time steps at the latest."},
   {.path = "snapshots", .field = member_of<OutputSpec, &OutputSpec::snapshots>, .value = "reversals",
    .choices = snapshot_choices,
    .text = "Whole packings are stored never, at reversals and ends of stages, or by strain."},
@@ -183,23 +180,37 @@ constexpr const char *defaults_head =
 constexpr const char *manual_head =
 R"(# Scene reference
 
-A scene is one TOML file that says all about a run. This page is generated from the table in
+A scene is one TOML file that describes a run. This page is generated from the table "
+ "in
 `dem/scene/schema.cpp` (`scene_manual()`); a test compares them. Ready scenes are in `apps/scenes`.
 
-- Quantities are text with a unit: `"10 mm"`, `"200 kPa"`, `"18 deg"`, `"0.5 1/s"`, `"2650 kg/m3"`, `"50 ns"`.
+- "
+ "Quantities are text with a unit: `"10 mm"`, `"200 kPa"`, `"18 deg"`, `"0.5 1/s"`, `"2650 kg/m3"`, `"50 ns"`.
   A bare number, or the unit of something else, is an error. What has no dimension is a plain number.
 - Friction is an angle in files (`deg`, `rad`, or its tangent as `"0.325 tan"`) and a coefficient tan(phi) inside.
-- Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
-- An unknown key is an error, and so is a key twice. Stresses are effective; compression is positive.
-- A key written `rolling.limit` is `limit` in the table `rolling`: `rolling = { limit = 0.5 }`, or `rolling.limit = 0.5`.
-- `--set key=value` on the command line overrides the file: `--set motion.damping=0.3`,
-  `--set specimen.pressure="200 kPa"`, `--set stage.0.strain=0.02`. Of keys that exclude each other, the one set this
+- "
+                                                                            "Numbers other than 0 are between 1e-30 "
+                                                                            "and 1e30 in size, in SI units.
+- An "
+                                                                            "unknown key is an error, and so is a "
+                                                                            "repeated key. Stresses are effective; "
+                                                                            "compression is positive.
+- A key "
+                                                                            "written `rolling.limit` is `limit` in "
+                                                                            "the table `rolling`: `rolling = { limit "
+                                                                            "= 0.5 }`, or `rolling.limit = 0.5`.
+- "
+                                                                            "`--set key=value` on the command line "
+                                                                            "overrides the file: `--set "
+                                                                            "motion.damping=0.3`,
+  `--set "
+                                                                            "specimen.pressure="200 kPa"`, `--set stage.0.strain=0.02`. Of keys that exclude each other, the one set this
   way replaces the one in the file.
 
 )";
 // clang-format on
 
-/// A rigid box is always consolidated isotropically, the default law needs no name, and without stages nothing is to be
+/// A rigid box is always consolidated isotropically, the default law needs no name, and without stages nothing is
 /// controlled. Not writing them keeps the recipes of specimens that are in caches. A packing from a file has grains and
 /// a stress of its own, against which only what was written is held.
 bool is_implied(const Key &key, StructRef scene)

@@ -19,7 +19,7 @@ double median_by_volume(std::vector<double> sizes);
 ///
 /// The incremental contact law needs no orientations, so none are stored (docs/theory.md, section 3). `id` is the
 /// grain's number in the specimen; storage order is the order of summation and never changes during a run. Two padding
-/// records stand behind the last grain: far away, radius 0; idle lanes of the SIMD loop point at them.
+/// records come after the last grain: far away, radius 0; idle lanes of the SIMD loop point at them.
 struct Packing
 {
   static constexpr std::size_t n_padding = 2;

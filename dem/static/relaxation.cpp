@@ -16,7 +16,7 @@ constexpr double iterations_of_increment = 100;
 /// Contacts of its own size that a grain has at least, as far as its mass goes: one that gains a contact stays stable.
 constexpr double least_contacts = 3;
 
-/// Grains that rattle between others would do so for ever while the kinetic energy of the rest has its peaks.
+/// Grains that rattle between others would do so forever while the kinetic energy of the rest has its peaks.
 constexpr double contact_damping = 0.05;
 constexpr double overlap_expected = 1e-3; ///< of the radius: for laws whose stiffness grows with overlap
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sand of one's own, and its friction from a laboratory curve.
+"""Your own sand, and its friction from a laboratory curve.
 
 The grading is given as a table. Drained triaxial tests at several angles of friction between grains are compared with a
 drained test of the laboratory (Karlsruhe fine sand, medium dense, 200 kPa); the angle with the least misfit is taken.

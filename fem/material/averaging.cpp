@@ -63,7 +63,7 @@ void Averaging::find_pairs(double reach, std::span<const std::array<double, 3>> 
     }
 }
 
-/// k to W. The iteration s <- sqrt(s / sum k w s) converges fast for weights that are smooth; what is left of a row
+/// k to W. The iteration s <- sqrt(s / sum k w s) converges fast for weights that are smooth; what remains of a row
 /// goes to its diagonal, since apply() sums differences.
 void Averaging::balance(std::span<const double> volumes)
 {

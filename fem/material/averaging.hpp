@@ -27,7 +27,7 @@ public:
 
   std::size_t n_points() const { return first_.size() - 1; }
   /// Means of `width` numbers at each point, which lie side by side. The sum is over differences, x_q + sum_r W_qr (x_r
-  /// - x_q), so that uniform fields stay to the bit.   @pre in and out do not overlap   Cost: in the loop.
+  /// - x_q), so that uniform fields stay bit for bit.   @pre in and out do not overlap   Cost: in the loop.
   void apply(std::span<const double> in, std::span<double> out, std::size_t width) const;
   /// The same for arrays of numbers.
   template <std::size_t width>

@@ -95,8 +95,8 @@ void Iwan::set_initial_stress(std::span<const Stress> effective)
   has_trial_ = false;
 }
 
-/// Virgin loading to the shear t beside normal stresses n: each element has the share w_k x_k of n and, of t, what
-/// min(w_k G gamma, what its strength leaves beside n) gives; the sum over all is t. In that sum, gamma runs from one
+/// Virgin loading to the shear t under normal stresses n: each element has the share w_k x_k of n and, of t, what
+/// min(w_k G gamma, what its strength leaves next to n) gives; the sum over all is t. In that sum, gamma runs from one
 /// yield to the next.
 void Iwan::share_out(const Shear &s, double p, double *state) const
 {

@@ -25,7 +25,7 @@ constexpr Key iwan_in_scenes[] = {
    .range = positive,
    .text = "sqrt(J2)/p' below which shearing contracts and above which it dilates; at most `strength_ratio`."},
   {.path = "contraction", .field = member<&IwanParameters::contraction>, .value = "0.5", .range = not_negative,
-   .text = "Rate of contraction per plastic shear strain; 0 here and for `dilation`: p' feels no shear."},
+   .text = "Rate of contraction per plastic shear strain; 0 here and in `dilation`: shear does not change p'."},
   {.path = "dilation", .field = member<&IwanParameters::dilation>, .value = "0.3", .range = {0, 1},
    .reason = "because below 0 it would contract, and above 1 plastic work would be negative",
    .text = "Rate of dilation per plastic shear strain."},
@@ -37,7 +37,7 @@ constexpr Key iwan_in_scenes[] = {
    .value = "1000 kPa", .range = positive, .text = "Mean effective stress at which dilation ends."},
   {.path = "elements", .field = member<&IwanParameters::elements>, .value = "12", .range = {4, 128},
    .reason = "because fewer do not follow the curve, and more add nothing to see",
-   .text = "Slip elements of a Gauss point: more make the curve smoother and the step dearer."},
+   .text = "Slip elements of a Gauss point: more make the curve smoother and the step more expensive."},
 };
 
 constexpr Key iwan_fixed[] = {

@@ -35,13 +35,13 @@ struct WaveModuli
 /// grains, layers or elements.
 ///
 /// A batch is asked for the stress after an increment from the *committed* state, as often as the solver needs (each
-/// trial starts from the committed state again), and then told to keep or to forget the last trial:
+/// trial starts from the committed state again), and then asked to keep or to forget the last trial:
 ///
-///     material.trial(increments, stresses);   // all points at once: a material may share them out as it likes
+///     material.trial(increments, stresses);   // all points at once: a material may distribute them freely
 ///     material.commit();                      // or rollback()
 ///
-/// Points are numbered 0 .. n_points()-1 and keep their number for good. What a user adds of their own is one class
-/// with these functions.   tested: tests/fem/material/material_test.cpp asks every material for this protocol
+/// Points are numbered 0 .. n_points()-1 and keep their number. A user's material is
+/// one class with these functions.   tested: tests/fem/material/material_test.cpp asks every material for this protocol
 class Material
 {
 public:
@@ -54,7 +54,7 @@ public:
   virtual void set_initial_stress(std::span<const Stress> effective) = 0;
 
   /// Stress of every point after its increment of displacement gradient from the committed state. Increments are small
-  /// (a time or load step); large rotations are the material's own business.
+  /// (a time or load step); the material handles large rotations itself.
   /// @throws RunFailure naming the point if a stress cannot be found
   virtual void trial(std::span<const Gradient> increments, std::span<Stress> stresses) = 0;
   /// The last trial becomes the state from which the next one starts.
@@ -64,11 +64,11 @@ public:
 
   /// Tangent at the last trial (at the committed state if there is none).
   virtual void stiffness(std::span<Stiffness> tangents) const = 0;
-  /// At the committed state; asked at every step, so it must be cheap. Bounds the stable time step, so rather too
-  /// large.
+  /// At the committed state; asked at every step, so it must be cheap. Bounds the stable time step, so better
+  /// too large than too small.
   virtual void wave_moduli(std::span<WaveModuli> moduli) const = 0;
 
-  /// The committed state; unpack() brings it back to the bit.
+  /// The committed state; unpack() brings it back bit for bit.
   /// @throws InputError from unpack() if the state is not one of this material with as many points
   virtual MaterialState pack() const = 0;
   virtual void unpack(const MaterialState &state) = 0;

@@ -5,7 +5,7 @@
 namespace isostat
 {
 /// The committed state of a material: what all points have in common (its name, its parameters), and the bytes of each
-/// point, by number. Whoever shares points out anew, over other ranks or layers, takes those it needs; a material
+/// point, by number. Code that distributes points again, over other ranks or layers, takes those it needs; a material
 /// whose points cannot be taken apart keeps everything in `common`, and its points are empty.
 /// tested: tests/fem/material/material_test.cpp
 struct MaterialState

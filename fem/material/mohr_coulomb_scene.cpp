@@ -18,21 +18,21 @@ constexpr Key mohr_coulomb_in_scenes[] = {
    .text = "Mean effective stress p_r at which the stiffness is given."},
   {.path = "exponent", .field = member<&MohrCoulombParameters::exponent>, .value = "0", .range = {0, 1},
    .reason = "because stiffness does not fall with depth, nor does it rise faster than stress",
-   .text = "n of the shear modulus G (p'/p_r)^n of a point at its mean effective stress of the start; it stays "
-           "constant. 0: G everywhere."},
+   .text = "n of the shear modulus G (p'/p_r)^n at the initial mean effective stress of a point; it stays constant. "
+           "0: G everywhere."},
   {.path = "friction_angle", .field = member<&MohrCoulombParameters::friction>, .unit = unit::deg, .value = "40 deg",
    .range = right_angle, .reason = because_tan, .text = "Angle of friction phi; 0 deg: Tresca's law (undrained clay)."},
   {.path = "cohesion", .field = member<&MohrCoulombParameters::cohesion>, .unit = unit::kPa, .value = "1 kPa",
    .range = not_negative,
-   .text = "Cohesion c. Soil at a free surface has no other strength; some kPa keep its stiffness regular. Above 0 kPa "
-           "without friction."},
+   .text = "Cohesion c. Soil at a free surface has no other strength; a few kPa keep its stiffness regular. Above 0 "
+           "kPa without friction."},
   {.path = "dilatancy_angle", .field = member<&MohrCoulombParameters::dilatancy>, .unit = unit::deg, .value = "10 deg",
    .range = right_angle, .reason = because_tan,
    .text = "Angle of dilatancy psi, at most `friction_angle`: equal to it the flow is associated."},
   {.path = "softening_strain", .field = member<&MohrCoulombParameters::softening_strain>, .value = "0",
    .range = {0, 10}, .reason = "because strains are small",
-   .text = "Plastic shear strain over which strength and dilatancy fall to their residual values, linear in tan(phi), "
-           "c, tan(psi); 0: none falls. Above 0 with a residual value, and only then."},
+   .text = "Plastic shear strain over which strength and dilatancy fall to their residual values, linear in "
+           "tan(phi), c, tan(psi); 0: no softening. Above 0 with a residual value, and only then."},
   {.path = "residual_friction_angle", .field = member<&MohrCoulombParameters::residual_friction>, .unit = unit::deg,
    .presence = Presence::optional, .value = "33 deg", .range = right_angle, .reason = because_tan,
    .text = "Friction angle after softening, at most `friction_angle`; left out: it does not fall."},

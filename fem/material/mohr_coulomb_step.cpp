@@ -142,7 +142,7 @@ Matrix3d MohrCoulomb::principal_derivative(const double *from, const Step &d) co
   return p + q * by_trial;
 }
 
-/// In principal axes: their stresses by principal_derivative(); shear turns the axes, and with them what is left of the
+/// In principal axes: their stresses by principal_derivative(); shear turns the axes, and with them what remains of the
 /// stress of the trial.
 Stiffness MohrCoulomb::tangent(const double *from, const Gradient &increment) const
 {

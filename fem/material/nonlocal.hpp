@@ -15,7 +15,7 @@ struct NonlocalParameters
 };
 
 /// Any material, made nonlocal: it is given the mean W dh of the increments of displacement gradient around each point,
-/// and what the strain differs from its mean is borne by an elastic stress s beside it,
+/// and what the strain differs from its mean is borne by an elastic stress s next to it,
 ///
 ///     sigma = W sigma_in(W dh) + (I - W) s            ds = A : (I - W) d eps,   A isotropic, fixed at the start
 ///
@@ -41,7 +41,7 @@ public:
   std::size_t n_points() const override { return inner_->n_points(); }
   /// s begins with the initial stress as the inner material does: any field of it is kept, not only a uniform one.
   void set_initial_stress(std::span<const Stress> effective) override;
-  /// Cost: beside the inner material's, 15 multiplications for each pair of points nearer than 4 l.
+  /// Cost: besides the inner material's, 15 multiplications for each pair of points nearer than 4 l.
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
   void commit() override;
   void rollback() override;

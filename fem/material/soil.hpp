@@ -46,7 +46,7 @@ struct Water
   double bulk_modulus = 2.2e9;   ///< K_f, Pa
   double relative_viscosity = 1; ///< mu/mu_w: of the pore fluid over that of water [-]
   double gravity = 9.81;         ///< m/s2, also of the soil's weight
-  AirLaw air = AirLaw::constant; ///< of no meaning without air
+  AirLaw air = AirLaw::constant; ///< ignored without air
   double henry = 0; ///< h: volume of air, at its pressure, that a volume of water dissolves [-]; 0.02 at 20 C
   double atmospheric_pressure = 101325; ///< at the water table, Pa
 
@@ -59,7 +59,7 @@ struct Water
 enum class SlopeWater
 {
   seepage,  ///< it flows parallel to the surface, below a water table that is parallel, too
-  submerged ///< it is at rest and stands above the whole slope
+  submerged ///< it is at rest and covers the whole slope
 };
 
 /// Inclination of the surface: an infinite slope. Axes turn with it: x points down the slope, z along the normal.

@@ -72,7 +72,7 @@ Motion without_parabola(const Motion &motion)
     }
   for (std::size_t i = 0; i < n; ++i)
     drift[i] = motion.velocity(i * dt);
-  // Two or three samples do not tell the powers apart: the decomposition then takes the smallest coefficients.
+  // Two or three samples do not separate the powers: the decomposition then takes the smallest coefficients.
   const Eigen::Vector2d c = velocities.completeOrthogonalDecomposition().solve(drift);
   std::vector<double> a = motion.accelerations();
   for (std::size_t i = 0; i < n; ++i)
@@ -93,7 +93,7 @@ Motion::Motion(std::vector<double> accelerations, double interval)
   displacements_.resize(n);
   for (std::size_t i = 0; i < n; ++i)
     {
-      if (!(std::abs(accelerations_[i]) <= strongest)) // nor none
+      if (!(std::abs(accelerations_[i]) <= strongest)) // or not a number
         throw InputError(fmt::format("acceleration {} of {} is {} m/s2; must be within {} m/s2. Is the unit right?",
                                      i + 1, n, accelerations_[i], strongest));
       if (i + 1 == n)

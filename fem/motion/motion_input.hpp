@@ -71,7 +71,7 @@ struct Record
   std::optional<double> start; ///< time of the first sample in the file, s; none: the file has no times
 };
 
-/// Reads a record. Formats, told apart by content:
+/// Reads a record. Formats, recognised by content:
 ///  - two columns, time (s) and acceleration, separated by blanks, tabs or commas; comment lines start with # or %, and
 ///    one header line of words may come first (as R and pandas write it, too, with a column of row names). The times
 ///    must rise by equal intervals (each to 1e-3 of the median); the interval is the mean one.
@@ -98,7 +98,7 @@ Motion harmonic_motion(double amplitude, double frequency, double duration, doub
 
 /// Ricker wavelet a = A (1 - 2 b^2) exp(-b^2), b = pi f (t - t0), from 0 to 2 t0 (Ricker 1953,
 /// doi:10.1190/1.1437843); f is the peak of its spectrum. v = A (t - t0) exp(-b^2), d = -A/(2 pi^2 f^2) exp(-b^2), each
-/// but for what is cut off before t = 0.
+/// except for what is cut off before t = 0.
 /// @param amplitude  m/s2   @param frequency  Hz   @param t0, interval  s
 /// @throws InputError unless f > 0, f t0 >= 1 (less than 1e-3 A is cut off), 0 < interval <= 0.1/f
 /// tested: tests/fem/motion/motion_input_test.cpp

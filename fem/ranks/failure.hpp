@@ -11,7 +11,7 @@ namespace isostat
 /// What went wrong on one rank, before it becomes the failure of all.
 struct RankFailure
 {
-  std::uint64_t order = 0; ///< the failure of lowest order is told, of equal ones that of the lowest rank
+  std::uint64_t order = 0; ///< the failure of lowest order is reported, of equal ones that of the lowest rank
   std::string message;
   bool bad_input = false; ///< of the user's making: an InputError
 };

@@ -49,12 +49,12 @@ struct DynamicsEnergy
 ///     u_next = u + dt v+
 ///
 /// sigma' has the viscous stress of SkeletonViscosity in it, if there is one.
-/// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is that of the
+/// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is for the
 /// pressure (PressureSystem), constant and factorised once. The skeleton alone limits dt; water of any stiffness and
 /// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
 /// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,
-/// doi:10.1061/JMCEA3.0001144). The state at the start is taken as in equilibrium: a frozen column stays still to the
-/// bit.   tested: tests/fem/solve/dynamics_test.cpp, tests/verification/shear_layer_test.cpp,
+/// doi:10.1061/JMCEA3.0001144). The state at the start is taken as in equilibrium: a frozen column stays still bit
+/// for bit.   tested: tests/fem/solve/dynamics_test.cpp, tests/verification/shear_layer_test.cpp,
 /// tests/fem/water/pressure_system_test.cpp
 class Dynamics
 {
@@ -76,7 +76,7 @@ public:
 
   const Vector &displacement() const { return u_; } ///< at time()
   const Vector &velocity() const { return v_; }     ///< at time() - dt/2
-  Vector acceleration() const;                ///< at time() - dt, as the unknown counts it; made anew at each call
+  Vector acceleration() const;                ///< at time() - dt, as the unknown counts it; made again at each call
   double acceleration(unsigned unknown) const ///< the same of one unknown that this rank owns
   {
     return (v_.local_element(unknown) - next_.local_element(unknown)) / time_step_;
@@ -90,7 +90,7 @@ public:
   DynamicsEnergy energy() const;
   const DynamicsSettings &settings() const { return settings_; }
 
-  /// To the bit; on another number of ranks that share out the mesh, to round-off of their sums. Collective.
+  /// Bit for bit; on another number of ranks that share out the mesh, to round-off of their sums. Collective.
   /// @throws InputError  restore() of another mesh, material or step; save() of a mesh that is shared out with a
   ///                     material that keeps its points as a whole
   SolverState save() const;

@@ -35,7 +35,7 @@ void Dynamics::find_loads()
   if (viscosity_)
     viscosity_->add(stresses_, total_);
   space_.add_internal_force(viscosity_ ? total_ : stresses_, force_);
-  // the difference of two whole sums: zero to the bit as long as the stresses are those of the start
+  // the difference of two whole sums: zero bit for bit as long as the stresses are those of the start
   const std::size_t n = force_.locally_owned_size();
   for (std::size_t i = 0; i < n; ++i)
     force_.local_element(i) += minus_reference_.local_element(i);

@@ -9,9 +9,9 @@
 
 namespace isostat
 {
-/// All that a solver needs to go on to the same bits: what a checkpoint stores, whatever the solver is. Of a mesh that
-/// is shared out over ranks it is complete on the first rank alone, and in the order of MeshOrder, so that any number
-/// of ranks can go on from it.
+/// All that a solver needs to continue to the same bits: what a checkpoint stores, whatever the solver is. Of a mesh
+/// that is shared out over ranks it is complete on the first rank alone, and in the order of MeshOrder, so that any
+/// number of ranks can continue from it.
 struct SolverState
 {
   std::uint64_t step = 0;
@@ -40,7 +40,7 @@ public:
   void operator()(const char *name, const std::vector<Stress> &stresses);
   /// A value for each point, or no values.
   void operator()(const char *name, const std::vector<double> &of_points);
-  /// A number that a run that goes on must share.
+  /// A number that a run that continues must share.
   void constant(const char *name, double value) { (*this)(name, value); }
   /// A number of which every rank has a part.
   void sum(const char *name, double part);
@@ -54,7 +54,7 @@ private:
 
 /// Takes the fields from a state. Until take() is called it only checks and changes nothing, so that a state that does
 /// not fit leaves the solver as it was.
-/// @throws InputError  a field that is not there, has another number of values, or a constant with another value
+/// @throws InputError  a field that does not exist, has another number of values, or a constant with another value
 class FieldReader
 {
 public:
@@ -65,7 +65,7 @@ public:
   void operator()(const char *name, Vector &values) const;
   void operator()(const char *name, std::vector<Stress> &stresses) const;
   void operator()(const char *name, std::vector<double> &of_points) const;
-  /// A number found anew may differ in its last digits, by sums over another number of ranks: the stored one counts.
+  /// A number found again may differ in its last digits, by sums over another number of ranks: the stored one counts.
   void constant(const char *name, double &value) const;
   void sum(const char *name, double &part) const; ///< all of it on the first rank
   /// Unpacks what belongs to the points of this rank.   Collective.

@@ -58,7 +58,7 @@ void Statics::step(double duration)
   ++state_.step;
 }
 
-/// Of a step of which `left` is to be done, the part that is done at once: one of equal ratios of times.
+/// Of a step of which `left` remains, the part that is done at once: one of equal ratios of times.
 double Statics::next_part(double left) const
 {
   const double since = state_.time - state_.flows_since, rise = std::log1p(problem_->settings.largest_part);

@@ -16,14 +16,14 @@ struct StaticsProblem; // fem/solve/statics/substep.hpp
 ///
 /// Time: BDF2 with variable steps (15), backward Euler where there is no step before: the first one, after a step
 /// without flow, and when the step grows by more than 2.4 (the limit of zero-stability is 1 + sqrt 2; Hairer, Norsett &
-/// Wanner, Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps. After a load
-/// at once everything goes with the logarithm of time, so no sub-step is longer than `largest_part` of the time since
+/// Wanner, Solving Ordinary Differential Equations I, III.5). Second order, L-stable for constant steps. After a sudden
+/// load everything evolves with the logarithm of time, so no sub-step is longer than `largest_part` of the time since
 /// water began to flow: results are those of the mesh within 0.5 % whatever the steps.
 ///
 /// Each step: Newton with the material's tangent (16) and a line search on the norm of the residual (18). Where it
-/// fails, relaxation (18a), if there are iterations for it: past a peak, where the way to equilibrium leads over larger
-/// residuals. Where that fails as well or the material refuses, the step is halved, and doubled again after each
-/// success; loads and given displacements go linearly from those of the state to those at the step's end, so a jump is
+/// fails, relaxation (18a), if there are iterations for it: past a peak, where the way to equilibrium passes through
+/// larger residuals. Where that fails as well or the material refuses, the step is halved, and doubled again after each
+/// success; loads and given displacements change linearly from the state to the end of the step, so a jump is
 /// shared out too.
 ///
 /// Converged (17) when |r| <= tolerance * force scale. |r|: Euclidean norm over the free unknowns, water volumes as
@@ -46,7 +46,7 @@ public:
   /// On by `duration` seconds; 0 (a jump of the load) is possible without pore water only.
   /// @throws StepGivenUp  settings.gives_up said so
   /// @throws RunFailure  the smallest sub-step has no solution: step, time, residual, reason. The state is that of the
-  ///         last good sub-step, time() tells
+  ///         last good sub-step, given by time()
   /// @throws InputError  negative duration
   void step(double duration);
   /// As step(), but no water moves, not even to drained faces: G du + S dp = 0. With duration 0 it puts on the loads of
@@ -67,7 +67,7 @@ public:
   const StaticsEffort &effort() const { return report_.effort; }
   double residual() const { return report_.residual; } ///< of the last trial, in units of the force scale
 
-  /// To the bit; on another number of ranks that share out the mesh, to round-off of their sums. Between steps, or
+  /// Bit for bit; on another number of ranks that share out the mesh, to round-off of their sums. Between steps, or
   /// after a failed one. Collective.
   /// @throws InputError  restore() of another mesh or material; save() of a mesh that is shared out with a material
   ///                     that keeps its points as a whole

@@ -45,7 +45,7 @@ struct MeshSpec
   GroundLine ground = {};
   std::vector<FinePlane> fine = {};
   std::vector<Patch> patches = {};     ///< in 2D only; of two that overlap the first has what both claim
-  std::array<double, 2> line = {0, 0}; ///< x and y of the vertical along which results are told by depth, m
+  std::array<double, 2> line = {0, 0}; ///< x and y of the vertical along which results are given by depth, m
 
   unsigned gauss_points(int dim) const ///< along each axis
   {
@@ -64,7 +64,7 @@ struct MeshSpec
 /// What holds the sides of a block.
 enum class Sides
 {
-  tied, ///< opposite ones move as one: the block goes on for ever
+  tied, ///< opposite ones move as one: the block continues forever
   walls ///< smooth walls of a box that moves with its rigid base
 };
 

@@ -13,7 +13,7 @@ namespace isostat
 ///
 /// with Theta at the pressures of the points, so that water and air are conserved whatever the step. Newton's method:
 /// Theta is concave, so that from the second iteration on the pressure rises to the solution. Each iteration has a new
-/// matrix, which is factorised anew; what is found depends on p', p'' and the right-hand side alone.
+/// matrix, which is factorised again; what is found depends on p', p'' and the right-hand side alone.
 /// tested: tests/fem/water/air_pressure_test.cpp
 class AirPressure
 {

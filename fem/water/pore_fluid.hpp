@@ -13,9 +13,9 @@ namespace isostat
 ///     c = dTheta/dp = n S/K_w + N/P^2 (while there is free air)          storage: 1/Q of docs/theory_column.md (3)
 ///
 /// c = n (S/K_w + (1 - S + h S)/p0) in situ: without dissolution Wood's mixture, n/K_f. Dissolved air is in
-/// equilibrium: at p_d = p0 beside free air, at the atmospheric pressure where S = 1. Free air is gone at P =
+/// equilibrium: at p_d = p0 next to free air, at the atmospheric pressure where S = 1. Free air is gone at P =
 /// N/(h n S), and comes out of solution below it. Vapour bounds P from below: under 2.3 kPa, that of water at 20 C,
-/// V_a goes on along its tangent, thousands of times softer than in situ. Water without any air, free or dissolved,
+/// V_a continues along its tangent, thousands of times softer than in situ. Water without any air, free or dissolved,
 /// does not cavitate.
 /// Fredlund & Rahardjo (1993), Soil mechanics for unsaturated soils, 2.3 and 8.2; Wood (1941), A textbook of sound.
 /// tested: tests/fem/water/pore_fluid_test.cpp

@@ -17,9 +17,9 @@ constexpr Key of_water[] = {
    .text = "Viscosity of the pore fluid over that of water, for which permeabilities are given: in a centrifuge at N g "
            "a fluid N times as viscous as water (docs/theory_column.md)."},
   {.path = "air", .field = member<&Water::air>, .value = "constant", .choices = air_names,
-   .text = "constant: air in the pores has the stiffness of its pressure in situ; boyle: it follows Boyle's law at the "
-           "pressure of the moment, stiffer and at last dissolved when the pressure rises, softer when it falls "
-           "(cavitation). A consolidation takes constant alone. boyle needs air, by `layer.saturation` or `henry`."},
+   .text = "constant: air in the pores has the stiffness of its pressure in situ; boyle: it follows Boyle's law at "
+           "the current pressure, stiffer and finally dissolved as the pressure rises, softer as it falls "
+           "(cavitation). A consolidation takes only constant. boyle needs air, by `layer.saturation` or `henry`."},
   {.path = "henry", .field = member<&Water::henry>, .value = "0", .range = {0, 0.1},
    .reason = "because water dissolves no less than nothing, and of air 0.02 at 20 C",
    .text = "Volume of air, at its pressure, that a volume of water dissolves at once: 0.02 at 20 C; 0: none, as if the "
@@ -27,8 +27,8 @@ constexpr Key of_water[] = {
            "undrained with `lagged_compressibility`."},
   {.path = "atmospheric_pressure", .field = member<&Water::atmospheric_pressure>, .unit = unit::kPa,
    .value = "101.325 kPa", .range = {5000, infinity}, .reason = "because water boils at 2.3 kPa",
-   .text = "Absolute pressure at the water table, which air in the pores feels beside that of the water below it. On a "
-           "submerged slope add the weight of the water above the surface."},
+   .text = "Absolute pressure at the water table, which acts on air in the pores in addition to that of the water "
+           "below it. On a submerged slope add the weight of the water above the surface."},
 };
 
 constexpr Key of_layers[] = {

@@ -30,7 +30,7 @@ void check_new(const fs_path &path, bool overwrite)
         fmt::format("{}: the file exists; give overwrite=True to replace it, or another name", path.string()));
 }
 
-/// A writer that replaces a file only if it is told to.
+/// A writer that replaces a file only on request.
 template <Name name, typename What>
 auto to_new_file(void (*write)(const fs_path &, const What &))
 {
@@ -50,7 +50,7 @@ std::vector<std::string> write_library(const fs_path &path, std::vector<Specimen
   std::error_code ignored;
   const bool extend = append && std::filesystem::exists(path, ignored);
   if (path.extension() != ".h5")
-    throw InputError(fmt::format("{}: must end in .h5, because scenes tell a library by it.", path.string()));
+    throw InputError(fmt::format("{}: must end in .h5, because scenes recognise a library by it.", path.string()));
   if (!extend)
     check_new(path, overwrite);
   double next_seed = 1;
@@ -154,8 +154,8 @@ void bind_files(py::module_ &module)
          Given<bool, "append"> append) { return write_library(path, specimens.value, overwrite, append); },
       py::arg("path"), py::arg("specimens"), py::kw_only(), py::arg("overwrite") = false, py::arg("append") = false,
       "Writes periodic specimens into one file, as `isostat library` does: a column takes its packings\n"
-      "from it. Returns the names of the entries: \"library.h5#s0001\" is one. append: keeps those that are "
-      "there.\nA column tells realisations apart by numbers[\"seed\"]: that of the grading; specimens without "
+      "from it. Returns the names of the entries: \"library.h5#s0001\" is one. append: keeps existing ones.\n"
+      "A column distinguishes realisations by numbers[\"seed\"]: that of the grading; specimens without "
       "one are counted on.");
   module.def("list_library", &numbers_of_library, py::arg("path"),
              "The numbers of each entry of a library by its name: seed, stresses in Pa, void ratio ...");
@@ -164,9 +164,9 @@ void bind_files(py::module_ &module)
              "Columns of a history.h5, with all their digits, and their units.");
   module.def("write_vtp", to_new_file<"snapshot", Snapshot>(&write_grains_vtp), py::arg("path"), py::arg("snapshot"),
              py::kw_only(), py::arg("overwrite") = false,
-             "Grains for ParaView. A file that is there is replaced only with `overwrite`.");
+             "Grains for ParaView. An existing file is replaced only with `overwrite`.");
   module.def("write_force_chains_vtp", to_new_file<"snapshot", Snapshot>(&write_force_chains_vtp), py::arg("path"),
              py::arg("snapshot"), py::kw_only(), py::arg("overwrite") = false,
-             "Force chains for ParaView. A file that is there is replaced only with `overwrite`.");
+             "Force chains for ParaView. An existing file is replaced only with `overwrite`.");
 }
 } // namespace isostat::python

@@ -93,7 +93,7 @@ void bind_measures(py::module_ &module)
           "they "
           "roll.")
       .def("measures", &measures,
-           "Scalars that a packing alone tells, as columns of the history, by name; SI, compression positive. "
+           "Scalars that a packing alone gives, as columns of the history, by name; SI, compression positive. "
            "measure_units()\n"
            "lists them; strains and the stresses of box or cell are columns of the history only.");
   module.def(

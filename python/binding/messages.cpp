@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors as exceptions, with the same text but for the names of what the user gave.   tested: tests/python/run_test.py
+// Errors as exceptions, with the same text except for the names of what the user gave.   tested: tests/python/run_test.py
 #include "base/error.hpp"
 #include "python/binding/binding.hpp"
 
@@ -47,11 +47,11 @@ void bind_errors(py::module_ &module)
     return type.inc_ref();
   };
   input_error = add("InputError", PyExc_ValueError,
-                    "A mistake in what was given: says where, the value, the allowed range and the remedy.");
+                    "A mistake in the input: says where, the value, the allowed range and the remedy.");
   run_failure = add("RunFailure", PyExc_RuntimeError,
-                    "A run that cannot go on: says the step, the grain and the last good checkpoint.");
+                    "A run that cannot continue: says the step, the grain and the last good checkpoint.");
   warning = add("IsostatWarning", PyExc_UserWarning,
-                "What a run, a preparation or a file that was read warns of; of a run behind its folder or title.");
+                "A warning of a run, a preparation or a file; that of a run follows its folder or title.");
   py::register_exception_translator(&translate);
 }
 } // namespace isostat::python

@@ -158,7 +158,7 @@ struct Request
 
 constexpr const char *kept_specimen = "specimen.h5"; ///< in the results folder, of a run that was given one
 
-/// The scene names the specimen that is kept beside it instead of what it says of preparation.
+/// The scene names the specimen that is kept next to it instead of what it says of preparation.
 void name_kept_specimen(Scene &scene)
 {
   scene.specimen = without_preparation(scene.specimen);
@@ -298,7 +298,7 @@ void bind_moment(py::module_ &module)
           "Shear strain xy of a cell, positive where x moves with y.")
       .def_readonly("void_ratio", &Moment::void_ratio, "e.")
       .def_property_readonly("positions", &running<&Packing::position>,
-                             "Centres of the running packing, (n, 3), m: a view that goes on changing with the run. "
+                             "Centres of the running packing, (n, 3), m: a view that changes with the run. "
                              "A sheared cell is kept\nupright, so the axes turn with it; snapshot() has those of the "
                              "laboratory.")
       .def_property_readonly("velocities", &running<&Packing::velocity>,

@@ -148,7 +148,7 @@ void bind_response(py::module_ &module)
       .def_readonly("steps", &RveResponse::steps, "Time steps, force evaluations, it took.")
       .def_property_readonly(
           "balance", [](const RveResponse &r) { return r.balance.within; },
-          "Imbalance that all loaded grains but those left out keep within [-]; of static stepping and relax().")
+          "Largest imbalance of the loaded grains except those left out [-]; of static stepping and relax().")
       .def_property_readonly(
           "worst_balance", [](const RveResponse &r) { return r.balance.worst; }, "That of the worst grain [-].")
       .def_readonly("indicator", &RveResponse::indicator, "Quasi-static error indicator.")
@@ -195,7 +195,7 @@ void bind_rve(py::module_ &module)
            "rate and damping do not count then. None: time steps at a rate.\n"
            "balance: largest imbalance of a grain, force or torque/radius over the largest contact force on it [-].\n"
            "left_out: share of the loaded grains, the worst, for which balance need not hold [-].\n"
-           "Ctrl-C takes an increment back. Raises InputError for settings out of range, naming it.")
+           "Ctrl-C undoes an increment. Raises InputError for settings out of range, naming it.")
       .def("advance", alone(&advance), py::arg("gradient"),
            "Strains it by a displacement gradient (3, 3), extension positive.")
       .def("undrained", alone(&undrained), py::arg("gradient"),
@@ -209,7 +209,7 @@ void bind_rve(py::module_ &module)
            "gradient: displacement gradient (3, 3), extension positive; its symmetric part is 0 where stress is "
            "controlled.\n"
            "stress: target (3, 3), Pa, tension positive: compression is negative, not as in a history. Symmetric where "
-           "it is\ncontrolled, not looked at elsewhere.\n"
+           "it is\ncontrolled, not used elsewhere.\n"
            "controlled: (3, 3), symmetric. tolerance: of the stress, over p' [-].\n"
            "Rejected at once: a target that needs tension, a component with strain and stress, a frame other than "
            "identity.\nRejected on the way: stress control strains it by more than 0.1, or takes max_steps.")

@@ -39,9 +39,9 @@ void bind_scene(py::module_ &module)
       .def_readonly("law", &Scene::contact, "The contact law.")
       .def_property_readonly(
           "folder", [](const Scene &scene) { return scene.output.folder; },
-          "Where run() leaves results unless it is told: results/<name of the scene file>.")
+          "Where run() leaves results unless a folder is given: results/<name of the scene file>.")
       .def_property_readonly("recipe", &specimen_recipe,
-                             "All that its prepared specimen depends on: what the cache and a library know it by.")
+                             "Everything that its prepared specimen depends on: the key of the cache and of a library.")
       .def_property_readonly("text", &to_toml, "The whole scene as TOML: every key with its value and unit.")
       .def(
           "__eq__", [](const Scene &one, const Scene &other) { return one == other; }, py::is_operator())

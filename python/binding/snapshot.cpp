@@ -245,7 +245,7 @@ void bind_snapshot(py::module_ &module)
           "ids: (n), whole numbers; default: counted from 0. velocities: (n, 3), m/s, spins: (n, 3), rad/s; default: "
           "at "
           "rest.\n"
-          "Contacts form when a run begins, without shear forces: let a `rebalance` stage come first.")
+          "Contacts form when a run begins, without shear forces: begin with a `rebalance` stage.")
       .def_readonly("time", &Snapshot::time, "s.")
       .def_readonly("step", &Snapshot::step, "Time steps since the run began.")
       .def_readonly("strain", &Snapshot::strain, "Logarithmic, along x, y, z since shearing began, tension positive.")

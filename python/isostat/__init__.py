@@ -8,13 +8,13 @@
     result.history["p"], result.history.units["p"]
 
 SI units. Stress and strain tensors are tension positive; p', q and the strains of a history compression positive.
-A contact law of one's own is written in C++ (CONTRIBUTING.md): Python would be called for every contact.
+Your own contact law is written in C++ (CONTRIBUTING.md): Python would be called for every contact.
 """
 import pathlib
 import sys
 
 try:
-    import numpy  # noqa: F401  that it is missing is said here, not somewhere inside
+    import numpy  # noqa: F401  that it is missing is reported here, not somewhere inside
     from isostat._core import (__version__, InputError, IsostatWarning, Law, Moment, RunFailure, Rve, RveResponse, RveState,
                                Snapshot, Specimen, default_scene, list_library, measure_units, read_snapshot,
                                read_specimen, scene_manual, write_force_chains_vtp, write_library, write_specimen,

@@ -23,13 +23,13 @@ CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by smal
              "library": "periodic specimens at several pressures and densities, in one file",
              "study": "NAME: the runs, tables and figures behind a page of results"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
-         "animate": "RESULTS [-o FILE.gif]: packings and their forces as the run goes on, also as .mp4",
-         "report": "RESULTS: figures and report.html of a results folder once more, also of a run under way"}
+         "animate": "RESULTS [-o FILE.gif]: packings and their forces during the run, also as .mp4",
+         "report": "RESULTS: draw figures and report.html of a results folder again, also during its run"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
             "void_ratio_limits": "loosest and densest packing of a grading",
             "micromechanics": "forces, fabric and anisotropy of stored packings",
-            "soil_column": "layers of soil that are shaken or consolidate, with grains at the Gauss points if asked for",
+            "soil_column": "layers of soil that are shaken or consolidate, with grains at the Gauss points on request",
             "rve_replay": "one packing of a column again, alone",
             "biaxial": "a block in plane strain: does a shear band form?"}
 

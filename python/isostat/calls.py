@@ -22,10 +22,10 @@ def path_text(name, value):
 
 
 def check_use(overwrite, resume):
-    """Raises InputError where a run is to replace what it is to go on from."""
+    """Raises InputError where a run is to replace what it is to continue from."""
     if overwrite and resume:
-        raise _core.InputError("overwrite and resume exclude each other: one replaces the results that the other goes "
-                               "on from. Give one of them.")
+        raise _core.InputError("overwrite and resume exclude each other: one replaces the results that the other "
+                               "continues from. Give one of them.")
 
 
 @contextlib.contextmanager

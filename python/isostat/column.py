@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The soil column, with materials of one's own. Needs the compiled part that is built with deal.II.
+"""The soil column, with your own materials. Needs the compiled part that is built with deal.II.
 
 tested: tests/python/column_test.py
 """
@@ -79,7 +79,7 @@ class Material(abc.ABC):
         """rho V_p^2 and rho V_s^2, the largest over all directions, (n, 2), Pa: they bound the time step of waves.
 
         Asked at every step. This one has the formula of an isotropic stiffness() and searches the directions of any
-        other; a formula of one's own is faster.
+        other; your own formula is faster.
         """
         return _column.wave_moduli(self.stiffness(state))
 
@@ -107,7 +107,7 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
 
     scene       ColumnScene                                output      folder; None: the scene's, results/<its name>
     materials   {name of a layer: Material} for the layers whose material is "user"
-    overwrite   replaces results that are there            resume      goes on from the checkpoint of `output`
+    overwrite   replaces existing results            resume      continues from the checkpoint of `output`
     threads     that share packings of grains; changes no bit of the result
     quiet       None: warns, as IsostatWarning; True: only keeps the warnings; False: progress and summary as well
 

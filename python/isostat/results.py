@@ -228,5 +228,5 @@ class Results:
 
 
 def read(folder: str | os.PathLike[str]) -> Results:
-    """The Results of a run, finished or not: `finished` tells, and the summary of an unfinished one is None."""
+    """The Results of a run, finished or not: `finished` says which, and the summary of an unfinished one is None."""
     return Results(folder)

@@ -49,12 +49,12 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
     output      folder for history, snapshots, ParaView files, checkpoints and summary; None: nothing is written but
                 prepared specimens
     specimen    a Specimen or Snapshot to start from. Its grains, their number, sizes and density, its void ratio and its
-                stress count; where the scene says otherwise is a warning, and not in the scene of the results. Its domain
-                and the stiffness of its contacts must be the scene's (a test that begins with `rebalance` may have another
-                stiffness). It is kept in `output` as specimen.h5, which the scene there names
-    cache       folder of prepared specimens; None: beside the output folder, as the program does
-    overwrite   replaces results that are there; excludes resume
-    resume      goes on from the newest checkpoint of `output`. The scene is that of the run, but may say that a stage
+                stress replace those of the scene; a difference is a warning and is not in the scene of the results. Its
+                domain and the stiffness of its contacts must be the scene's (a test that begins with `rebalance` may
+                have another stiffness). It is kept in `output` as specimen.h5, which the scene there names
+    cache       folder of prepared specimens; None: next to the output folder, as the program does
+    overwrite   replaces existing results; excludes resume
+    resume      continues from the newest checkpoint of `output`. The scene is that of the run, but may say that a stage
                 that is not over ends later, also of a run that has finished: strain, max_steps, times, and below until
                 cycles, reversals_after_liquefaction, strain and volumetric_strain. The bits are those of one long run
     threads     0: as many as the packing can feed; changes no bit of the result
@@ -65,7 +65,7 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
 
     Returns Results of the folder, or a Run with history, summary and snapshot if there is none. Ctrl-C writes a
     checkpoint and raises KeyboardInterrupt, and so does SIGTERM (SIGHUP, SIGUSR1, SIGXCPU) unless the program handles it;
-    `resume=True` goes on. An exception in a callback ends the run. Callbacks look, they do not change the packing.
+    `resume=True` continues. An exception in a callback ends the run. Callbacks observe and must not change the packing.
     Raises InputError, and RunFailure with the step, the grain and the last checkpoint.
     """
     scene = as_scene(scene)
@@ -94,7 +94,7 @@ def run(scene: SceneLike, output: str | os.PathLike[str] | None = None, *,
 
 
 class Run:
-    """What run() leaves in memory.
+    """Results of run() in memory.
 
     history     History: a row whenever one was due        finished  False: a callback stopped it
     summary     as summary.json of a run with a folder; None of a run that was stopped

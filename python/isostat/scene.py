@@ -15,7 +15,7 @@ class Scene(_core.Scene):
     Scene("test.toml")                                     a file; a relative specimen.file counts from its folder, and
                                                            from the working folder if nothing is there
     Scene(text)                                            TOML text (it has line breaks)
-    Scene({"stage": [{"kind": "drained", "strain": 0.1}]}) sections as dictionaries; what is left out has its default
+    Scene({"stage": [{"kind": "drained", "strain": 0.1}]}) sections as dictionaries; omitted keys have their defaults
     Scene(title="mine", specimen={"pressure": "100 kPa"})  sections as keywords
     Scene(..., set={"motion.damping": 0.05})               single keys over all of that
 
@@ -54,7 +54,7 @@ def scene_source(source, overrides, sections):
         if sections:
             raise _core.InputError("A scene from a file takes single keys with set={...}, no sections.")
         if not os.path.isfile(source):
-            raise _core.InputError(f"{source}: is not there. Give the path of a scene file, its text or a dictionary.")
+            raise _core.InputError(f"{source}: does not exist. Give the path of a scene file, its text or a dictionary.")
         return "", os.fspath(source), given, True
     if isinstance(source, str):
         return source, "scene", given
@@ -64,7 +64,7 @@ def scene_source(source, overrides, sections):
 
 
 def key_text(key, table=""):
-    """A key as TOML; dots go on as they are, "rolling.limit" is `limit` in the table `rolling`."""
+    """A key as TOML; dots stay as they are, "rolling.limit" is `limit` in the table `rolling`."""
     if not isinstance(key, str):
         raise _core.InputError(f"{table + ': ' if table else ''}{key!r}: names of keys are text.")
     return key if re.fullmatch(r"[A-Za-z0-9_.-]+", key) else json.dumps(key, ensure_ascii=False)

@@ -23,12 +23,12 @@ DEFAULTS, QUICK, PAGE = {"seeds": 8}, {"seeds": 1}, "ensemble"
 GRAINS = 300  # of a packing
 LARGE, LARGE_SEEDS = 3000, 2  # one packing of as many grains as ten have
 SEEDS = 40  # of the library; those that miss their density are not in it
-MIXED = 38  # seeds of which a packing has one by lot, where depths differ
+MIXED = 38  # seeds of which a packing draws one at random, where depths differ
 
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """A column of so many points (two in each element), so many packings at each; `mixed`: each depth has others."""
+    """A column of this many points (two in each element) and packings at each; `mixed`: each depth has others."""
 
     folder: pathlib.Path  # of the study
     mixed: bool
@@ -57,7 +57,7 @@ class Run:
 
     @property
     def settings(self):
-        """Those of `isostat ensemble`: a member has other seeds, or another lot of the same ones."""
+        """Those of `isostat ensemble`: a member has other seeds, or another draw of the same ones."""
         keys = {"layer.0.cells": self.points // 2, "grains.realisations": self.realisations,
                 "grains.library": library_of(self.folder, self.grains),
                 "grains.cache": self.folder / f"in_situ_{self.grains}.h5",

@@ -41,7 +41,7 @@ NUMERICS = [  # family, label, what differs from the defaults; time step in ms
     ("min_steps", "min_steps 40", {"min_steps": 40}),
     ("damping", "damping 0.2, no dashpots", {"damping": 0.2, "contact_damping": 0.0}),
     ("damping", "damping 0.01", {"damping": 0.01}),
-    ("free", "free grains left alone", {"free_grain_damping": 0.0}),
+    ("free", "rattlers left alone", {"free_grain_damping": 0.0}),
     ("same", "motion 1 ppm larger", {"factor": 1.000001}),
     ("same", "reference, 1 ppm larger", {**SLOW, "factor": 1.000001}),
     ("reference", "next slow", {"inertial_number": 1e-4, "min_steps": 40}),
@@ -133,7 +133,7 @@ def in_situ(folder, grains):
 
 
 def write_library(folder, executor, grains, n_seeds):
-    """Specimens of so many grains of one size at 20 and 100 kPa."""
+    """Specimens of this many grains of one size at 20 and 100 kPa."""
     edge = 4.641588833612779 * (grains / 1000) ** (1 / 3)
     columns.library(library_of(folder, grains), executor, n_seeds, ["20 kPa", "100 kPa"], {
         "contact.young": "1 GPa", "grading.grains": grains, "grading.cloud_edge": f"{edge:.9f} mm",

@@ -16,12 +16,12 @@ from studies.speed_error.figures import front, spread_labels
 from studies.tables import write_tables
 
 LIQUEFIED = 0.95
-LOOK = {  # Okabe and Ito: colours that colour-blind readers can tell apart
+LOOK = {  # Okabe and Ito: colours that colour-blind readers can distinguish
     "default": ("#1a1a1a", "*", "default"),
     "reference": ("#7f7f7f", "P", "I and min_steps"),
     "min_steps": ("#0072b2", "o", "min_steps"),
     "damping": ("#56b4e9", "o", "damping"),
-    "free": ("#f0e442", "v", "free grains left alone"),
+    "free": ("#f0e442", "v", "rattlers left alone"),
     "rate": ("#d55e00", "s", "inertial number I"),
     "step": ("#009e73", "^", "FE step"),
     "fast": ("#e69f00", "D", "I 1e-3, min_steps 10"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An undrained column of packings beside an Iwan column that is fitted to the curve of such a packing.
+"""An undrained column of packings next to an Iwan column that is fitted to the curve of such a packing.
 
 A packing of 300 grains (apps/scenes/rve_library.toml) is sheared at constant volume at 100 and 200 kPa by element_test.
 The Iwan sand has G and its exponent from the secants at a strain of 2e-5, and the strength ratio, mean of both, from

@@ -56,7 +56,7 @@ def percent(value):
 
 
 def masing_row(label, rows, other):
-    """Of one run beside the beam's (time, surface, strains)."""
+    """Of one run next to the beam's (time, surface, strains)."""
     time, interval = rows["time"], rows["time"][1]
     surface = np.interp(time, other[0], other[1])
     strains = [np.interp(time, other[0], strain) for strain in other[2]]

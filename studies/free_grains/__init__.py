@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The quasi-static limit of undrained tests: what free grains, walls that push, rate, time step and damping change.
+"""The quasi-static limit of undrained tests: what rattlers, walls that push, rate, time step and damping change.
 
 Every setting is run on the same specimens.
 """

@@ -10,7 +10,7 @@ SERIES = (  # label, colour, marker, settings
     ("default, and other rates", "#0072b2", "o", (plan.NUMERICS[0], plan.DEFAULT, plan.SLOW, plan.SLOWEST)),
     ("local damping 0.2 instead of dashpots", "#cc79a7", "v", plan.LOCAL_SETTINGS),
     ("walls push", "#009e73", "^", plan.PUSHED),
-    ("free grains left alone", "#e69f00", "D", plan.ALONE_SETTINGS),
+    ("rattlers left alone", "#e69f00", "D", plan.ALONE_SETTINGS),
     ("all three", "#d55e00", "s", plan.OLD_SETTINGS))
 
 RATES = ("default rate", "#0072b2", "o"), ("a tenth of it", "#d55e00", "s")
@@ -80,7 +80,7 @@ def draw_hold(results, path):
         steps, lost, energy, _, _ = results.held(run)
         colour, what = looks[run.setting]
         line = "-" if run.domain == "rigid-box" else "--"
-        label = f"{run.domain.replace('-', ' ')}, free grains {what}"
+        label = f"{run.domain.replace('-', ' ')}, rattlers {what}"
         axes[0].plot(steps, lost, line, color=colour, label=label)
         axes[1].plot(steps, energy, line, color=colour, label=label)
     axes[0].set(xlabel="time steps since loading stopped [-]", ylabel="p' lost [kPa]")

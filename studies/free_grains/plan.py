@@ -8,7 +8,7 @@ HELD_STEPS = 100_000
 DEFAULT = speed_plan.DYNAMIC
 SLOW = of("rate / 10", 2.5e5, **TENTH)
 SLOWEST = of("rate / 100", 2.5e6, **HUNDREDTH)
-# of first cycles only: four decades of the rate, and what the brake on free grains does at a slow one
+# of first cycles only: four decades of the rate, and what the damping of rattlers does at a slow one
 EARLY = [DEFAULT, SLOW, SLOWEST, of("rate / 1000", 2.5e7, inertial_number=7e-7, load_per_wave=1e-4),
          *[of(f"c = {c:g}, rate / 100", 2.5e6, **HUNDREDTH, free_grain_damping=c) for c in (0.01, 1)]]
 # monotonic tests have a default of their own, I = 4e-5
@@ -21,7 +21,7 @@ def at_two_rates(label, **motion):
 
 
 LOCAL_SETTINGS = at_two_rates("local damping alone", **LOCAL)
-ALONE_SETTINGS = at_two_rates("free grains left alone", **ALONE)
+ALONE_SETTINGS = at_two_rates("rattlers left alone", **ALONE)
 PUSHED = at_two_rates("walls push", **PUSHING)
 OLD_SETTINGS = at_two_rates("all three", **LOCAL, **ALONE, **PUSHING)
 NUMERICS = [of("rate x 2", inertial_number=1.4e-3, load_per_wave=0.2),

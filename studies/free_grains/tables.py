@@ -7,7 +7,7 @@ from studies.free_grains import plan
 from studies.history import History
 
 REVERSALS = (2, 4, 6, 8, 10, 12, 14, 16)
-Q_GRID = np.arange(-58e3, 58.1e3, 1e3)  # Pa; the ends, where walls brake, stand in the reversal itself
+Q_GRID = np.arange(-58e3, 58.1e3, 1e3)  # Pa; the ends, where walls brake, are in the reversal itself
 STRAIN_SPACING = 1e-5
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The paper's figures as ensembles: monotonic tests at three densities, cyclic tests over a row of preparations,
-drained tests beside the laboratory. And what they leave open: resistance curves, critical states, specimens made in
+drained tests next to the laboratory. And what they leave open: resistance curves, critical states, specimens made in
 other ways, slower tests and usual ones.
 
     isostat study paper                                             2,000 grains, three seeds (90 CPU minutes)
@@ -8,9 +8,9 @@ other ways, slower tests and usual ones.
     isostat study paper --parts resistance critical ways paces --tables docs/results/paper
                                                                     what the figures leave open (170 CPU minutes)
     isostat study paper --grains 10000 -o results/paper_10000 --tables docs/results/paper_10000
-    isostat study paper --figures docs/results/paper                figures and claims anew from tables
+    isostat study paper --figures docs/results/paper                figures and claims again from tables
 
-Rows that a folder of tables has of other tests stay in it: delete the folder to begin anew.
+Rows that a folder of tables has of other tests stay in it: delete the folder to begin again.
 """
 import pathlib
 import sys
@@ -20,7 +20,8 @@ from studies.paper import claims, figures, plan, tables, variants
 from studies.tables import read_csv, write_csv
 
 DEFAULTS, QUICK = {"seeds": 3}, {"seeds": 1}
-MARKDOWN = {"claims": claims.markdown, "ways": variants.markdown, "paces": variants.markdown}
+MARKDOWN = {"ways": variants.markdown, "paces": variants.markdown}
+SIZES = {"2,000 grains": "paper", "10,000 grains": "paper_10000"}  # folders of their tables, side by side
 
 
 def add_options(line):
@@ -63,4 +64,8 @@ def draw(folder):
     needed = {name: read_csv(folder / f"{name}.csv") for name in claims.TABLES}
     if needed["undrained_states"] and needed["cyclic_tests"]:
         write(folder, {"claims": claims.table(needed)})
+        tested = {size: read_csv(folder.with_name(name) / "claims.csv") for size, name in SIZES.items()}
+        if any(tested.values()):
+            first = next(SIZES[size] for size, rows in tested.items() if rows)
+            (folder.with_name(first) / "claims.md").write_text(claims.markdown(tested), encoding="utf-8")
     figures.draw(folder)

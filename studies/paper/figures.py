@@ -26,7 +26,7 @@ def draw(folder):
 
 @of_tables("undrained_curves")
 def monotonic(table, _):
-    """Figure 1: effective stress paths and stress-strain curves, beside laboratory anchors."""
+    """Figure 1: effective stress paths and stress-strain curves, next to laboratory anchors."""
     figure, ((path, curve),) = panels(1, 2, height=3.9)
     for density, colour in DENSITIES.items():
         for direction, sign in (("compression", 1), ("extension", -1)):
@@ -206,7 +206,7 @@ def anisotropy(table, _):
 
 @of_tables("drained_curves")
 def drained(table, _):
-    """Drained tests beside the laboratory, the two pressures in columns."""
+    """Drained tests next to the laboratory, the two pressures in columns."""
     figure, axes = panels(2, 2, height=5.4, sharex=True)
     tests = {test.name: test for test in lab.drained_tests()}
     for column, pressure in enumerate((100, 200)):

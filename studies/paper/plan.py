@@ -9,7 +9,7 @@ P0 = 200  # kPa, of the paper
 FRICTION = 18  # degrees
 PAPER_RATIO = 0.15  # q_amp/(2 p0') of its cyclic test, 60 kPa
 PAPER = (0.30, 0.64, 0.88)  # its relative densities
-# (e_min, e_max): the paper's, and those of boxes of so few grains, which walls loosen (study void_ratio_limits);
+# (e_min, e_max): the paper's, and those of boxes of this few grains, which walls loosen (study void_ratio_limits);
 # at the paper's limits no box of 2,000 grains is as dense as D_r = 0.88
 PAPER_LIMITS, OWN_LIMITS = (0.568, 0.841), {2000: (0.632, 0.896)}
 CELL_LIMITS = (0.518, 0.802)  # of 2,000 grains, the loosest away from walls
@@ -23,7 +23,7 @@ LOOSE = 11  # preparation friction of those, degrees
 AFTER_ONSET = 8  # reversals: four cycles
 LARGE = 5000  # grains
 # Preparation friction, degrees, of large boxes of the paper's densities, instead of a search, whose trials take half an
-# hour each: the loosest that stand when friction is set (those of D_r = 0.30 lose their pressure), nearly the densest
+# hour each: the loosest that keep their pressure when friction is set (those of D_r = 0.30 do not), nearly the densest
 LARGE_DEGREES = {0.30: FRICTION, 0.88: 0.5}
 
 # the default I = 4e-5 to 0.5 % of strain, ten times that behind it: what that changes is measured (`slow`)
@@ -42,7 +42,7 @@ class Way:
 
     specimen: dict = dataclasses.field(default_factory=dict)  # keys of [specimen]
     grading: dict = dataclasses.field(default_factory=dict)  # keys of [grading]
-    pressure: float = 0  # kPa, at which friction is raised; the compression goes on from there
+    pressure: float = 0  # kPa, at which friction is raised; the compression continues from there
     cell: bool = False  # no walls
     own_limits: bool = True  # of the cell; else those of boxes define its density
     at_once: bool = False  # friction is raised as the test begins, without a new balance

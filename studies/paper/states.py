@@ -68,7 +68,7 @@ def goes_on(history):
 
 
 def cyclic_numbers(history):
-    """Up to the onset, around it and, of a test that goes on for half a cycle at least, behind it."""
+    """Up to the onset, around it and, of a test that continues for half a cycle at least, behind it."""
     onset = history.onset
     behind = slice(onset, None) if goes_on(history) else None
     ratio = history.p / history.p0

@@ -45,7 +45,7 @@ class Results:
                       if run.kind != "prepare" and store.is_done(run)]
 
     def of(self, *kinds):
-        """Tests of these kinds, but for the variants."""
+        """Tests of these kinds, except for the variants."""
         return [(run, history) for run, history in self.tests
                 if run.kind in kinds and not run.packing.way and run.pace in (plan.DEFAULT, plan.SLOW)]
 
@@ -196,7 +196,7 @@ TEST = ("test", "direction", "slow", "specimen", "grains", "seed", "p0' (kPa)", 
 
 
 def merged(path, rows):
-    """These rows behind those of the table that is there, but for the tests and curves that are in `rows`."""
+    """These rows behind those of the existing table, except for the tests and curves that are in `rows`."""
     before = read_csv(path)
     new = {test_of(row) for row in rows}
     return [row for row in before if test_of(row) not in new] + rows

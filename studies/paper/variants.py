@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What hangs on how specimens are made, and on how fast they are tested: a row for each variant."""
+"""What depends on how specimens are made, and on how fast they are tested: a row for each variant."""
 import numpy as np
 
 from studies.ensembles import ensemble

@@ -141,7 +141,7 @@ def row(grains, limit, twisting, compression=(), cyclic=()):
 
 
 def draw(values, path):
-    """Each law as a point: its slope and its cycles, beside the paper's."""
+    """Each law as a point: its slope and its cycles, next to the paper's."""
     figure, axes = plt.subplots(figsize=(5.4, 4.2), layout="constrained")
     for grains, marker in ((FEW, "o"), (MANY, "s")):
         for twisting, colour in ((True, BLUE), (False, ORANGE)):

@@ -135,7 +135,7 @@ def stiffness_table(results):
 
 
 def draw_stiffness(results, path):
-    """G against p' for each law and density, beside the correlation at the same void ratios."""
+    """G against p' for each law and density, next to the correlation at the same void ratios."""
     figure, axes = plt.subplots(1, len(STIFFNESS_LAWS), figsize=(11, 3.6), layout="constrained", sharey=True)
     for axis, law in zip(axes, STIFFNESS_LAWS, strict=True):
         for degrees, shade in zip(DEGREES, (1.0, 0.65, 0.35), strict=True):
@@ -175,7 +175,7 @@ def velocity_table(results):
 
 
 def draw_velocity(results, path):
-    """V_s over depth beside the correlation."""
+    """V_s over depth next to the correlation."""
     figure, axis = plt.subplots(figsize=(4.4, 4.4), layout="constrained")
     for law in LAWS:
         depth, speeds, target = (np.array(x) for x in zip(*velocity_rows(results, law), strict=True))
@@ -183,7 +183,7 @@ def draw_velocity(results, path):
                       fmt="o-", ms=3.5, color=COLOURS[law], label=f"{law}, {GROUND[law]['young']}")
     axis.plot(target.mean(axis=1), depth, "--", color="black", lw=1, label="resonant column")
     axis.fill_betweenx(depth, 0.85 * target.mean(axis=1), 1.15 * target.mean(axis=1), color="0.85", label="within 15 %")
-    axis.set(xlabel="velocity of shear waves (m/s)", ylabel="depth (m)", xlim=(0, None), ylim=(21, 0))
+    axis.set(xlabel="shear-wave velocity (m/s)", ylabel="depth (m)", xlim=(0, None), ylim=(21, 0))
     axis.legend(frameon=False, fontsize=8)
     axis.grid(alpha=0.3, lw=0.4)
     save(figure, path, dpi=130)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Correlations of laboratory tests on sand, beside which the packings are drawn. Pressures in Pa, G in Pa, strains and
+"""Correlations of laboratory tests on sand, next to which the packings are drawn. Pressures in Pa, G in Pa, strains and
 damping ratios as shares."""
 import numpy as np
 

@@ -8,7 +8,7 @@ from studies.drawing import plain_logarithm, save
 from studies.ensembles import ensemble
 from studies.speed_error import plan
 
-DYNAMIC, STATIC = ("#d55e00", "s"), ("#0072b2", "o")  # Okabe and Ito: colours that colour-blind readers can tell apart
+DYNAMIC, STATIC = ("#d55e00", "s"), ("#0072b2", "o")  # Okabe and Ito: colours that colour-blind readers can distinguish
 KINDS = [("rigid-box", "(a) boxes"), ("periodic-cell", "(b) cells")]
 
 
@@ -17,7 +17,7 @@ def look(setting):
 
 
 def spread_labels(axes, points):
-    """Writes each label beside its point where it covers neither points nor labels; a thin line leads to far ones."""
+    """Writes each label next to its point where it covers neither points nor labels; a thin line leads to far ones."""
     figure = axes.figure
     figure.canvas.draw()
     renderer = figure.canvas.get_renderer()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gathers the runs that are done: one row per setting and kind of specimen, its errors beside its cost."""
+"""Gathers the runs that are done: one row per setting and kind of specimen, its errors next to its cost."""
 import collections
 import warnings
 

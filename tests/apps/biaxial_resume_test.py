@@ -31,7 +31,7 @@ class Resume(ColumnTest):
             shutil.rmtree(self.folder / "parts", ignore_errors=True)
             said = self.stop_when_saved(SOFTENING, how, "-q", *options, program="biaxial")
             if how == signal.SIGTERM:
-                self.assertIn("go on with --resume", said)
+                self.assertIn("continue with --resume", said)
             self.assertFalse((self.folder / "parts/summary.json").exists())
             self.goes_on(SOFTENING, *options)
         again = self.run_app("biaxial", SOFTENING, "-o", "parts", "--no-figures", "--resume", *options)
@@ -46,7 +46,7 @@ class Resume(ColumnTest):
         self.stop_when_saved(SOFTENING, signal.SIGKILL, "-q", *options, program="biaxial")
         self.goes_on(SOFTENING, *options)
         calls = (self.folder / "parts/provenance.txt").read_text(encoding="utf-8").split("\n\n")
-        self.assertEqual(["--resume" in call for call in calls], [False, True], "each call is told of")
+        self.assertEqual(["--resume" in call for call in calls], [False, True], "each call is recorded")
 
     def test_a_failed_run_has_not_finished(self):
         options = (*SMALL, *SAVED, *settings(newton__relaxation_iterations=1))

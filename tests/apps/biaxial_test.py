@@ -296,7 +296,7 @@ class Biaxial(AppTest):
         self.assertEqual(self.run_app("biaxial", "--print-manual").stdout, manual.read_text(encoding="utf-8"))
         self.assert_refused(self.run_block(ELASTIC.format(degree=3)), "mesh.degree")
         self.assert_refused(self.run_block(FRICTION, "--set", "newton.max_iterations=0"), "newton.max_iterations")
-        self.assert_refused(self.run_block(GRAINS), "soil.library", "is not there")
+        self.assert_refused(self.run_block(GRAINS), "soil.library", "does not exist")
         self.assert_refused(self.run_block(GRAINS, "--set", "soil.inertial_number=2"), "soil.inertial_number")
         shown = self.run_app("biaxial", "--print-defaults").stdout
         for key in ("in_situ", "min_steps", "realisations", "fabric_rate"):

@@ -13,7 +13,7 @@ import numpy as np
 
 from support import AppTest, contents, main, tiny_scene
 
-os.environ["ISOSTAT_INSTRUCTION_SET"] = "SSE4"  # what 200 grains do, to the bit, on any machine
+os.environ["ISOSTAT_INSTRUCTION_SET"] = "SSE4"  # what 200 grains do, bit for bit, on any machine
 
 STAGES = '[[stage]]\nkind = "drained"\nstrain = 0.02\n'
 SCENE = tiny_scene(stages=STAGES, motion='inertial_number = 4e-3')
@@ -141,7 +141,7 @@ class Results(Calibrate):
                          "six digits in the table")
 
     def test_undrained_extension(self):
-        """The model's strains grow in the direction of the test; p' stands in the place of the volume."""
+        """The model's strains grow in the direction of the test; p' takes the place of the volume."""
         self.write("lab.csv", "eps_a[%],p[kPa],q[kPa]\n0,200,0\n-0.5,150,-60\n-1,140,-70\n-2,150,-90\n")
         text = plan_text(1).replace('"drained"', '"undrained"\ndirection = "extension"')
         self.assert_done(self.run_it("-o", "out", "--no-figures", plan=self.write("plan.toml", text)))
@@ -236,7 +236,8 @@ class Refusals(Calibrate):
         self.assert_plan_refused(plan_text(key="contact.fiction", bounds="[1, 2]"), "unknown key",
                                  "contact.friction")
         self.assert_plan_refused(plan_text(key="nothing.alike", bounds="[1, 2]"), "element_test --print-defaults")
-        self.assert_plan_refused(plan_text().replace("lab.csv", "lob.csv"), "wrong.toml:19", "lob.csv", "is not there")
+        self.assert_plan_refused(plan_text().replace("lab.csv", "lob.csv"), "wrong.toml:19", "lob.csv",
+                                 "does not exist")
         self.assert_plan_refused(plan_text().replace("scene.toml", "other.toml"), "wrong.toml:2", "other.toml")
         for text, parts in ((LABORATORY.replace("v[kPa]", "v[bar]"), ("lab.csv:1", '"sigma_v[bar]": the unit is bar')),
                             (LABORATORY.replace("2,0.3", "0.9,0.3"), ("lab.csv:5", "eps_a[%] = 0.9", "goes back")),
@@ -245,7 +246,7 @@ class Refusals(Calibrate):
             self.assert_plan_refused(plan_text(), *parts)
         self.assert_refused(self.run_app("isostat", "calibrate"), "no plan given", "quick_karlsruhe.toml")
         for path in ("nowhere.toml", "/dev/zero", "."):
-            self.assert_refused(self.run_it(plan=path), path, "is not there, or is no file")
+            self.assert_refused(self.run_it(plan=path), path, "does not exist, or is no file")
 
     def test_density_that_no_trial_reaches(self):
         plan = self.write("dense.toml", plan_text(curve="relative_density = 1.0"))
@@ -268,7 +269,7 @@ class Refusals(Calibrate):
         self.assert_done(self.run_it("-o", "out", "--no-figures", "--overwrite"))
         (self.folder / "thesis").mkdir()
         self.write("thesis/chapter.tex", "precious")
-        for name in ("scene.toml", "provenance.txt"):  # files of one's own do not make it a results folder
+        for name in ("scene.toml", "provenance.txt"):  # a user's files do not make it a results folder
             before = contents(self.folder / "thesis")
             for flag in ((), ("--overwrite",)):
                 self.assert_refused(self.run_it("-o", "thesis", *flag), "thesis", f"holds no {name}")

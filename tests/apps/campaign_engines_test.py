@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Campaigns on every engine: processes of this machine, ranks of mpirun, a Dask cluster of two workers. Workers, runs
-and the leading process are killed, and the same command goes on; the tables are those of one process."""
+and the leading process are killed, and the same command continues; the tables are those of one process."""
 import contextlib
 import importlib.util
 import os
@@ -99,7 +99,7 @@ class Engines(AppTest):
         self.assertFalse((self.folder / "out").exists())
 
     def test_leader_ends(self):
-        """Its runs end, too, with a checkpoint, and the same command goes on."""
+        """Its runs end, too, with a checkpoint, and the same command continues."""
         for with_signal, expected in ((signal.SIGTERM, 130), (signal.SIGUSR1, 130), (signal.SIGKILL, -signal.SIGKILL)):
             leader = self.start(self.campaign("out", "--jobs", 2))
             wait_until(lambda: all_children(leader), "a run", leader)

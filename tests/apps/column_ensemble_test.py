@@ -176,7 +176,7 @@ class Ensemble(ColumnTest):
             self.assertGreater((self.folder / f"two/figures/fig_ensemble_{name}.png").stat().st_size, 10000)
 
     def test_members_with_the_same_packings_count_once(self):
-        """Four lots of two seeds for one block: two of them at least are alike, to the bit."""
+        """Four draws of two seeds for one block: two of them at least are alike, bit for bit."""
         self.assert_done(self.run_ensemble(self.scene, "-n", 4, "-o", "out", "-q", *settings(
             layer__0__mixed_realisations=2, layer__0__lot_length="3 m")))
         rows = table(self.folder / "out/members.csv")
@@ -223,7 +223,7 @@ class Ensemble(ColumnTest):
                     if "provenance" in entry]
 
     def test_depths_with_packings_of_their_own(self):
-        """By lot: another member draws anew; of several at a point all differ. Otherwise all depths have the same."""
+        """At random: another member draws again; several at a point differ. Otherwise all depths have the same."""
         mixed = settings(layer__0__mixed_realisations=5, grains__realisations=2, grains__cache=self.cache / "mixed.h5",
                          analysis__duration="0.01 s")
         self.ensemble("mixed", *mixed)
@@ -238,7 +238,7 @@ class Ensemble(ColumnTest):
         blocks = [word.replace("mixed.h5", "blocks.h5") for word in mixed] + settings(layer__0__lot_length="3 m")
         self.assert_done(self.run_column(self.scene, "-o", "blocks", "-q", *blocks))
         sources = self.sources("blocks.h5")
-        self.assertEqual((len(sources), len(set(sources))), (6, 2), "one lot for all three depths")
+        self.assertEqual((len(sources), len(set(sources))), (6, 2), "one draw for all three depths")
         same = settings(grains__cache=self.cache / "same.h5", analysis__duration="0.01 s")
         self.assert_done(self.run_column(self.scene, "-o", "same", "-q", *same))
         self.assertEqual(len(set(self.sources("same.h5"))), 1, "one seed at all depths")
@@ -262,7 +262,7 @@ class Ensemble(ColumnTest):
         return self.write("sand.toml", SAND)
 
     def test_slopes_that_packings_cannot_bear(self):
-        """Told before the preparation where no friction would do, otherwise after that of the packing most sheared."""
+        """Refused before the preparation where no friction would do, else after that of the packing most sheared."""
         for angle, parts in (("30 deg", ("slope.angle = 30 deg", "layer.0", "at a depth of", "more than 60 deg")),
                              ("26 deg", ("rve: layer.0, depth 2.5 m:", "not reached", "may be too steep"))):
             self.assert_refused(self.run_column(self.scene, "-o", "out", "-q", *settings(
@@ -356,7 +356,7 @@ mesh.ground_z = ["4 m", "3 m"]""").replace("density =", 'permeability = "1e-4 m/
         self.assert_done(self.run_ensemble(*arguments))
         (kept / "summary.json").unlink()
         for file in (kept / "checkpoint").iterdir():
-            file.write_bytes(b"no checkpoint")  # it begins anew
+            file.write_bytes(b"no checkpoint")  # it begins again
         self.assert_done(self.run_ensemble(*arguments))
         self.assertEqual((self.folder / "out/summary.txt").read_text(encoding="utf-8"), whole)
 

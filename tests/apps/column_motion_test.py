@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What soil_column tells of the motion of a surface that rings: rows, spectra, shares, depths, against every step."""
+"""What soil_column reports of the motion of a surface that rings: rows, spectra, shares, depths, against every step."""
 import json
 import pathlib
 import sys

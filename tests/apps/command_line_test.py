@@ -26,7 +26,7 @@ class SceneMistakes(AppTest):
         self.refuse(text, f"scene.toml:{self.line_of(text, 'dampnig')}:", "dampnig", "damping")
 
     def test_missing_scene(self):
-        self.assert_refused(self.run_test("nowhere.toml"), "nowhere.toml", "is not there")
+        self.assert_refused(self.run_test("nowhere.toml"), "nowhere.toml", "does not exist")
 
     def test_no_scene(self):
         self.assert_refused(self.run_app("element_test"), "no scene given", "--help")
@@ -84,7 +84,7 @@ class SpecimenMistakes(AppTest):
         return specimen
 
     def test_missing(self):
-        self.refuse("scene.toml:", "specimen.file", "is not there")
+        self.refuse("scene.toml:", "specimen.file", "does not exist")
 
     def test_damaged_cache(self):
         scene = self.write("make.toml", tiny_scene(stages=CYCLIC.format(steps=10)))
@@ -95,7 +95,7 @@ class SpecimenMistakes(AppTest):
         cached.write_bytes(whole[: len(whole) // 2])
         result = self.run_test(scene, "-o", "again", *own)
         self.assert_done(result)
-        self.assertIn("prepared anew, because the one in the cache is damaged", result.stderr)
+        self.assertIn("prepared again, because the one in the cache is damaged", result.stderr)
         self.assertEqual(cached.stat().st_size, len(whole))
         self.assertEqual(*((self.folder / name / "history.csv").read_bytes() for name in ("made", "again")))
 
@@ -222,7 +222,7 @@ class Copied(AppTest):
         for program in ("isostat", "element_test"):
             (self.folder / "there").mkdir(exist_ok=True)
             shutil.copy(BIN / program, self.folder / "there" / program)
-        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "python/isostat is not there",
+        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "python/isostat does not exist",
                             "copied", "built or installed")
         (self.folder / "link").symlink_to(BIN / "isostat")
         self.assert_done(self.run_app(self.folder / "link", "--version"))
@@ -230,7 +230,7 @@ class Copied(AppTest):
         result = self.run_app(self.folder / "there/element_test", scene, "-o", "out")
         self.assert_done(result)
         self.assertIn("figures were not drawn: ", result.stdout)
-        self.assertIn("share/isostat/report is not there", result.stdout)
+        self.assertIn("share/isostat/report does not exist", result.stdout)
 
 
 class Readme(AppTest):
@@ -284,7 +284,7 @@ class OutputFolder(AppTest):
         self.assert_refused(self.run_test(self.scene, "-o", "thesis", "--overwrite"), "thesis", "not overwritten",
                             "scene.toml")
         self.assertEqual(contents(other), {"chapter.tex": b"precious"})
-        self.write("thesis/scene.toml", tiny_scene())  # of one's own, not of a run
+        self.write("thesis/scene.toml", tiny_scene())  # a user's file, not of a run
         before = contents(self.folder)
         for place, scene in (("thesis", self.scene), (".", "thesis/scene.toml"), ("thesis/.", "thesis/scene.toml")):
             self.assert_refused(self.run_test(scene, "-o", place, "--overwrite"), "not overwritten", "holds no ")
@@ -299,7 +299,7 @@ class OutputFolder(AppTest):
                                 ("pipe: is a pipe or a device; must be a scene file", ("pipe",)),
                                 ("zero: is a pipe or a device; must be a scene file", ("/dev/zero",)),
                                 ("is compressed; must be a scene file (TOML). Unpack it", ("scene.toml.gz",)),
-                                ("link: is a link to nowhere, which is not there", (self.scene, "-o", "link")),
+                                ("link: is a link to nowhere, which does not exist", (self.scene, "-o", "link")),
                                 ("a point in its number, no comma", (self.scene, "--set", "specimen.pressure=0,5 kPa")),
                                 ("error: The following argument was not expected: --bogus", (self.scene, "--bogus"))):
             with self.subTest(said):
@@ -336,7 +336,7 @@ class OutputFolder(AppTest):
         before = contents(self.folder / "out")
         result = self.run_test(self.scene, "-o", "out", "--resume")
         self.assert_done(result)
-        self.assertIn("this run has finished, there is nothing to resume", result.stdout)
+        self.assertIn("this run has finished; there is nothing to resume", result.stdout)
         self.assertEqual(contents(self.folder / "out"), before)
 
     def test_resume_and_overwrite_exclude_each_other(self):

@@ -48,7 +48,7 @@ class Compare(ReportTest):
         self.assertEqual(re.findall(r"<tr><td>([^<]*)", scene), ["contact.friction", "output.folder"])
 
     def test_units(self):
-        """Those of the summary's text: 199.999 kPa for 199999 Pa, deg and Pa at the end of a name stand in brackets."""
+        """Those of the summary's text: 199.999 kPa for 199999 Pa, deg and Pa at the end of a name are in brackets."""
         self.assert_done(self.compare(self.runs / "one", self.runs / "other"))
         text = (self.folder / "compare.html").read_text(encoding="utf-8")
         p0 = json.loads((self.runs / "one/summary.json").read_text(encoding="utf-8"))["p0"]
@@ -160,7 +160,7 @@ class Compare(ReportTest):
         os.mkfifo(self.folder / "pipe")
         for name in ("thesis.tex", "pipe"):
             result = self.compare(self.runs / "one", self.runs / "other", "-o", name)
-            self.assert_refused(result, f"{name}: is there, and no page of Isostat. Give another --output")
+            self.assert_refused(result, f"{name}: exists and is not a page of Isostat. Give another --output")
         self.assertEqual((self.folder / "thesis.tex").read_text(encoding="utf-8"), "precious")
 
 

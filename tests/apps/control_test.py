@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A drained test whose sides cannot follow says so in summary, on stderr and in summary.json, or fails if it is
-told to; a resumed run says the same."""
+set to; a resumed run says the same."""
 import json
 import signal
 

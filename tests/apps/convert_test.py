@@ -30,7 +30,7 @@ class Convert(AppTest):
         self.assertFalse((self.folder / "out.h5").exists())
 
     def test_values_of_another_file(self):
-        """External storage, links and virtual datasets: a file of a stranger would name any file of the reader's."""
+        """External storage, links and virtual datasets: an untrusted file could name any file of the reader's."""
         self.assert_done(self.convert(self.lattice("a.txt"), "other.h5"))
         (self.folder / "secret").write_bytes(bytes(8 * 27))
         os.mkfifo(self.folder / "fifo")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A number in a checkpoint that is none, or infinite, and members that are wrong: the run does not go on from it, says
-where it is, and takes the checkpoint before where that is whole. Here some of the numbers, alternately the one and the
-other; ISOSTAT_EVERY_CALL=1 tries both with each number."""
+"""A number in a checkpoint that is none, or infinite, and members that are wrong: the run does not continue from it,
+says where it is, and takes the checkpoint before where that is whole. Here some of the numbers, alternately the one and
+the other; ISOSTAT_EVERY_CALL=1 tries both with each number."""
 import functools
 import shutil
 import signal
@@ -15,7 +15,7 @@ from failing_runs import COLUMN, EVERY, SAVED
 from support import CYCLIC, AppTest, contents, main, results, tiny_scene
 
 QUIET = ("-q", "--no-figures")
-FOR_OTHERS = ("state/grains/mass", "state/grains/inertia")  # their inverses stand beside velocities
+FOR_OTHERS = ("state/grains/mass", "state/grains/inertia")  # their inverses are next to velocities
 
 
 def numbers_of(path):
@@ -100,7 +100,7 @@ class DamagedCheckpoints(AppTest):
         def number(item, name, value):
             return lambda file: file[item].attrs.modify(name, np.uint64(value))
 
-        beyond = "speaks of stages beyond the 1 of the scene"
+        beyond = "names stages beyond the 1 of the scene"
         for change, said in ((lambda file: ends_at(file, 1), beyond), (number("drive/place", "stage", 2), beyond),
                              (lambda file: lost(file, 5), "@quantity = 5, expected at most 4"),
                              (number("drive/loading", "direction", 2), "@direction = 2, expected at most 1"),
@@ -128,7 +128,7 @@ class DamagedCheckpoints(AppTest):
             file["drive/path/start"].attrs["edges_x"] = 0.0
         result = self.run_app("element_test", *arguments, "-o", "parts", "--resume")
         self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertRegex(result.stderr, r"history.csv: eps_x = -?inf in row \d+; the run has gone wrong, or went on")
+        self.assertRegex(result.stderr, r"history.csv: eps_x = -?inf in row \d+; the run has gone wrong, or continued")
 
     def test_members_of_a_soil_column(self):
         scene = self.write("column.toml", COLUMN.replace("0.6 s", "6 s"))
@@ -166,7 +166,7 @@ class DamagedCheckpoints(AppTest):
         self.assert_done(result)
         self.assertRegex(result.stderr, r"warning: damaged checkpoint:\n.*last.h5: grain \d+ \(id \d+\) has a value of "
                                         "nan in its velocity")
-        self.assertIn("goes on from the checkpoint before", result.stderr)
+        self.assertIn("continues from the checkpoint before", result.stderr)
         self.assert_done(self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "whole"))
         self.assertEqual(results(parts), results(self.folder / "whole"))
 
@@ -191,10 +191,10 @@ class DamagedCheckpoints(AppTest):
             file["written"].attrs["snapshots"] = np.uint64(2**33)
         (parts / "summary.txt").unlink()
         self.assert_refused(self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "parts", "--resume"),
-                            "speaks of 8589934592 snapshots and ")
+                            "counts 8589934592 snapshots and ")
 
     def test_files_that_a_loss_of_power_leaves(self):
-        """Zeros at the end of the last checkpoint, and no more than a part of the table: the run goes on."""
+        """Zeros at the end of the last checkpoint, and no more than a part of the table: the run continues."""
         for program, scene, more in (
                 ("element_test", self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000))), ()),
                 ("soil_column", self.write("column.toml", COLUMN.replace("0.6 s", "6 s")), ()),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A test that has finished or was stopped goes on to a later end, to the bits of one long run; what else differs in its
-scene is refused, and what is there stays."""
+"""A test that has finished or was stopped continues to a later end, to the bits of one long run; what else differs in
+its scene is refused, and what is there stays."""
 import json
 import signal
 
@@ -92,13 +92,13 @@ times = 2
         self.assert_same_run("whole", "parts")
         self.assert_refused(self.run_test(self.scene, "-o", "parts", "--set", "output.folder=x", "--set",
                                           "stage.1.times=3", "--resume"),
-                            "stage.1.times = 3, but the checkpoint has 4: an end can be put off only")
+                            "stage.1.times = 3, but the checkpoint has 4: only a later end is possible")
 
     def test_all_else_is_refused_and_leaves_what_is_there(self):
         self.assert_done(self.run_to("out", 2))
         before = contents(self.folder / "out")
         self.assert_refused(self.run_to("out", 1, "--resume"),
-                            "out: stage.1.until.cycles = 1, but the checkpoint has 2: an end can be put off only")
+                            "out: stage.1.until.cycles = 1, but the checkpoint has 2: only a later end is possible")
         self.assert_refused(self.run_to("out", 3, "--resume", "--set", "stage.0.max_steps=3000"),
                             "stage.0.max_steps = 3000, but the checkpoint has 2500: this stage is over")
         for key, value in (("stage.1.deviator_amplitude", "50 kPa"), ("motion.damping", "0.3"),

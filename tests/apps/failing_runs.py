@@ -50,7 +50,7 @@ class FailingRuns(AppTest):
         shutil.rmtree(self.folder / "out", ignore_errors=True)
 
     def resumed(self, program, arguments, output):
-        """As the messages say: from the checkpoint, or anew."""
+        """As the messages say: from the checkpoint, or again."""
         checkpoints = self.folder / "out/checkpoint"
         resumable = checkpoints.is_dir() and any(checkpoints.glob("*.h5"))
         result = self.run_app(program, *arguments, *output, "--resume" if resumable else "--overwrite")
@@ -61,7 +61,7 @@ class FailingRuns(AppTest):
         self.assertTrue((self.folder / "out/summary.txt").is_file())
 
     def repeated(self, program, arguments, output):
-        """By the same command, as a campaign or a library goes on."""
+        """By the same command, as a campaign or a library continues."""
         append = ["--append"] if (self.folder / "out/library.h5").exists() else []
         self.assert_done(self.run_app(program, *arguments, *output, *append))
 

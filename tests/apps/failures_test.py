@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Calls that fail (tests/support/failing_calls.cpp): whatever open, write, fsync, rename or mkdir of a run is refused,
-once or from then on, the program says so and ends with 1 or 2, nothing is left half written, and the run goes on to the
-same files. Some calls of each kind here; with ISOSTAT_EVERY_CALL=1 all of them, and 500 of some 28,000 allocations."""
+once or from then on, the program says so and ends with 1 or 2, nothing is left half written, and the run continues to
+the same files. Some calls of each kind here; with ISOSTAT_EVERY_CALL=1 all of them, and 500 of some 28,000
+allocations."""
 import collections
 import errno
 import signal
@@ -59,7 +60,7 @@ class Failures(FailingRuns):
         print(f"  element_test: {sum(codes.values())} of {n} allocations failed, exit codes {dict(codes)}", flush=True)
 
     def test_without_locks(self):
-        """On a file system that has none: one run goes on, many in one folder would not be safe."""
+        """On a file system that has none: one run continues, many in one folder would not be safe."""
         scene = self.write("scene.toml", SHORT_TEST)
         arguments = (scene, *SAVED, "--set", "stage.0.max_steps=20000")
         command = self.command("element_test", *arguments, *OUTPUT)

@@ -35,12 +35,12 @@ class Interrupted(ColumnTest):
         result = self.run_app(*command, "-o", "out", "--resume")
         self.assert_done(result)
         self.assertIn("this run has finished", result.stdout)
-        self.assertIn("Its figures are missing, they are drawn now", result.stdout)
+        self.assertIn("Its missing figures are drawn now", result.stdout)
         self.assertNotIn("--overwrite", result.stdout)
         self.assertTrue((self.folder / "out/report.html").exists())
         self.assertEqual(self.numbers(), before)
         again = self.run_app(*command, "-o", "out", "--resume")
-        self.assertIn("Start it anew with --overwrite", again.stdout)
+        self.assertIn("Start it again with --overwrite", again.stdout)
 
     def test_column(self):
         column = ("soil_column", self.scene, *settings(analysis__duration="0.05 s"))
@@ -71,7 +71,7 @@ class Interrupted(ColumnTest):
             'kind = "harmonic"\namplitude = "0.1 g"\nfrequency = "3 Hz"\nduration = "60 s"\nramp = "1 s"',
             'kind = "record"\nfile = "a.txt"'))
         ensemble = ("isostat", "ensemble", scene, "--records", "a.txt", *settings(analysis__duration="0.05 s"))
-        self.stop_drawing(*ensemble, begun="summary.txt", parts=("the same command goes on",))
+        self.stop_drawing(*ensemble, begun="summary.txt", parts=("the same command continues",))
         self.assert_done(self.run_app(*ensemble, "-o", "out", "-q"))
         self.assertTrue((self.folder / "out/report.html").exists())
 

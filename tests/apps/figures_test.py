@@ -57,7 +57,7 @@ class ResponseSpectrum(ToleranceTest):
     def test_stiff_oscillator(self):
         a = fixture.ricker(0.005 * np.arange(400), 1.5, 4.0)
         self.assert_close(response_spectrum(a, 0.005, [0.01], 0.05)[0], 1.5, 2e-3,
-                          "stiff: moves with the ground but for (T f)^2")
+                          "stiff: moves with the ground except for (T f)^2")
 
     def test_response_after_the_motion(self):
         """A short kick: the peak comes after it. Impulse a0 dt/2 of one step: velocity, then w v without damping."""
@@ -157,7 +157,7 @@ class Figures(ToleranceTest):
         self.assert_below(float(said[1]), 1e-4, "the pulse is cut off where it is 1e-4 of its peak")
 
     def test_short_run_is_noted(self):
-        """A layer that still swings when the run ends has no clean transfer function, and the reader is told."""
+        """A layer that still swings when the run ends has no clean transfer function, and a message says so."""
         column = DRAWING.results(fixture.elastic(self.folder / "run", end=3.0))
         with contextlib.redirect_stderr(io.StringIO()) as notes:
             plt.close(DRAWING.figures["fig_transfer"](column))
@@ -201,7 +201,7 @@ class Figures(ToleranceTest):
         plt.close(figure)
 
     def test_grains_without_profiles(self):
-        """What is left of a run is drawn: here the history at the output depths, and no r_u in profiles.h5."""
+        """What remains of a run is drawn: here the history at the output depths, and no r_u in profiles.h5."""
         folder = fixture.grains(self.folder / "run")
         shutil.rmtree(folder / "grain_profiles")
         (folder / "profiles.h5").unlink()

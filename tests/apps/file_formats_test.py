@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """docs/file_formats.md against the files that the programs write: every dataset with its unit and number of dimensions,
-every attribute, every column of history.csv stands in the section of its format."""
+every attribute, every column of history.csv is in the section of its format."""
 import csv
 import pathlib
 import re

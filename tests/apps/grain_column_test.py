@@ -157,7 +157,7 @@ class Bits(GrainColumnTest):
         for with_signal, to_mpirun, resume in ((signal.SIGTERM, False, []), (signal.SIGUSR1, True, ["--resume"])):
             code, message = self.stop(2, with_signal, 0.1, *resume, to_mpirun=to_mpirun)
             self.assertEqual(code, 130, message)
-            self.assertEqual(len(re.findall(r"interrupted at step \d+; go on with --resume", message)), 1)
+            self.assertEqual(len(re.findall(r"interrupted at step \d+; continue with --resume", message)), 1)
         self.assert_done(self.run_on_ranks(1, self.scene, "-o", "parts", "-q", "--resume"))
         self.assert_same_bytes("whole", "parts")
 
@@ -185,7 +185,7 @@ class Sands(GrainColumnTest):
         scene = self.write("own.toml", own.format(cache=self.cache))
         self.assert_done(self.run_column(scene, "--validate"))
         result = self.run_column(scene, "-o", "out", *settings(layer__1__library="nowhere.h5"))
-        self.assert_refused(result, "layer.1.library", "nowhere.h5", "is not there")
+        self.assert_refused(result, "layer.1.library", "nowhere.h5", "does not exist")
 
 
 class Rest(GrainColumnTest):
@@ -272,7 +272,7 @@ class Failures(GrainColumnTest):
 
 
 class Alone(GrainColumnTest):
-    """One packing of the column, sent the same way again by rve_replay."""
+    """One packing of the column, strained again in the same way by rve_replay."""
 
     def setUp(self):
         super().setUp()
@@ -285,7 +285,7 @@ class Alone(GrainColumnTest):
 
     def test_stress_is_that_of_the_column_to_the_bit(self):
         text, summary = self.replay("-o", "alone", "--every", 5)
-        self.assertIn("to the bit after all", text)
+        self.assertIn("bit for bit after all", text)
         self.assertGreater(summary["increments"], 50)
         self.assertEqual(summary["equal"], summary["increments"])
         self.assertEqual(summary["largest_error"], 0)
@@ -328,7 +328,7 @@ class Mistakes(GrainColumnTest):
         self.assertFalse((self.folder / "out").exists())
 
     def test_library(self):
-        self.refuse(["grains.library", "nowhere.h5", "is not there"], *settings(grains__library="nowhere.h5"))
+        self.refuse(["grains.library", "nowhere.h5", "does not exist"], *settings(grains__library="nowhere.h5"))
         self.refuse(["grains.toml", "not an HDF5 file"], *settings(grains__library="grains.toml"))
         self.refuse(["0 realisations", "of 0.9", "isostat library --append", "s0001"],
                     *settings(layer__0__relative_density=0.9))
@@ -377,7 +377,7 @@ class Drained(GrainColumnTest):
                               f"drained: 10 % of the largest pore pressure may be left ({name})")
         settled = rows["settlement"]
         self.assertGreater(settled[-1], 1e-3)
-        self.assert_below(np.ptp(settled[after]), 0.02 * settled[-1], "drained: it settles no more, but for 2 %")
+        self.assert_below(np.ptp(settled[after]), 0.02 * settled[-1], "drained: it settles no more, except for 2 %")
         self.assert_below(abs(rows["residual"][-1]), 1e-10 * np.abs(rows["external"]).max(), "round-off of the work")
 
 

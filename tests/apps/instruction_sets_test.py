@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""One machine as another that has fewer instructions: each set its own bits, all the same test, and a run that goes on
-with another set than its checkpoint was written with says so."""
+"""One machine as another that has fewer instructions: each set its own bits, all the same test, and a run that
+continues with another set than its checkpoint was written with says so."""
 import os
 import re
 import signal
@@ -54,8 +54,8 @@ class InstructionSets(AppTest):
             self.assertEqual(code, 130, "it is still at work")
             result = self.run_on(goes_on, folder, "--resume")
             self.assert_done(result)
-            self.assertEqual(f"warning: the checkpoint was written with the instruction set {other}, this machine goes "
-                             f"on with {widest}: " in result.stderr, noted, result.stderr)
+            self.assertEqual(f"warning: the checkpoint was written with the instruction set {other}, this machine "
+                             f"continues with {widest}: " in result.stderr, noted, result.stderr)
             self.assertEqual(results(self.folder / folder) == whole, not noted)
 
     def test_other_programs(self):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of element_test that are stopped, killed, resumed, or watched more or less closely go on to the same bits."""
+"""Runs of element_test that are stopped, killed, resumed, or watched more or less closely continue to the same bits."""
 import pathlib
 import random
 import re

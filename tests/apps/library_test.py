@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""isostat library on a few grains: what it makes, goes on with, and refuses; a test from an entry."""
+"""isostat library on a few grains: what it makes, continues with, and refuses; a test from an entry."""
 import os
 import re
 import signal
@@ -112,7 +112,7 @@ class Library(AppTest):
         self.assert_refused(self.run_test(scene, "-o", "none", "--set", "specimen.file=library.h5#s0009"),
                             "no entry \"s0009\"", "s0001", "library.h5#s0001")
         self.assert_refused(self.run_test(scene, "-o", "none", "--set", "specimen.file=nowhere.h5#s0001"),
-                            "specimen.file", "is not there")
+                            "specimen.file", "does not exist")
         self.assert_refused(self.run_test(scene, "-o", "none", "--set", "specimen.domain=rigid-box"),
                             "periodic-cell", "rigid-box")
 
@@ -169,7 +169,7 @@ class Library(AppTest):
         with self.started(self.make_many()) as process:
             wait_until((self.folder / "library_preparation/scene.toml").exists, "the folder", process)
             process.send_signal(signal.SIGSTOP)
-            self.assert_refused(self.make("-o", "library.h5"), "library_preparation", "another program is at work")
+            self.assert_refused(self.make("-o", "library.h5"), "library_preparation", "another program is using it")
             process.send_signal(signal.SIGCONT)
             process.send_signal(signal.SIGINT)
             process.communicate()
@@ -187,7 +187,7 @@ class Mistakes(AppTest):
         self.write("packing.h5", "")
         self.refuse(["--set", "specimen.file=packing.h5"], "packing.h5", "relative_density")
         self.refuse(["--set", "grading.grain=5"], "grading.grain", "grading.grains")
-        self.assert_refused(self.run_app("isostat", "library", "nowhere.toml"), "nowhere.toml", "is not there")
+        self.assert_refused(self.run_app("isostat", "library", "nowhere.toml"), "nowhere.toml", "does not exist")
         self.assert_refused(self.run_app("isostat", "library"), "no scene given", "--help")
 
     def test_lists(self):

@@ -2,7 +2,7 @@
 """Loads at which soil of friction and cohesion collapses: footings, trapdoors, walls. They owe nothing to Isostat.
 
 Plane strain, angles in rad, compression positive. Exact solutions and bounds are those of rigid, perfectly plastic soil
-with associated flow; what is neither is said to be approximate.   tested: tests/apps/limit_loads_test.py
+with associated flow; what is neither is called approximate.   tested: tests/apps/limit_loads_test.py
 
 Prandtl (1921), Z. angew. Math. Mech. 1, 15; Reissner (1924), Proc. 1st Int. Congr. Appl. Mech., Delft; Terzaghi (1943),
 Theoretical soil mechanics; Davis (1968), in: Soil mechanics, selected topics; Martin (2005), Proc. 11th Int. Conf.

@@ -124,7 +124,7 @@ class Micromechanics(AppTest):
         self.assertFalse((self.folder / "out").exists())
 
     def test_nothing_there(self):
-        self.refuse("nowhere", "is not there", results="nowhere")
+        self.refuse("nowhere", "does not exist", results="nowhere")
 
     def test_no_snapshots(self):
         (self.folder / "empty").mkdir()

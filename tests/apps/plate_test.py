@@ -99,7 +99,7 @@ class PlateTest(ColumnTest):
         way, force, _, summary = self.forces(analysis__from="1 m", analysis__to="2 m")
         self.assertEqual(summary["length"], 1)
         self.assert_near(force[0], 0, 1e-9, "round-off of forces of kN")
-        self.assertGreater(force[-1], MODULUS * way[-1] / 2 * 1, "the soil beside it helps")
+        self.assertGreater(force[-1], MODULUS * way[-1] / 2 * 1, "the soil next to it helps")
 
     def test_goes_on_where_it_was_stopped(self):
         options = settings(analysis__load_steps=60, output__checkpoint="1e-9 min")

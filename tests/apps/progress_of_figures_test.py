@@ -98,7 +98,7 @@ class Peaks(AppTest):
         self.assertEqual(peak_text(3.64, None), "3.64 m/s$^2$")
 
     def test_labels_lie_within_their_panels(self):
-        """Peaks up and down, early and late, and values of all steps beside them: nothing lies over an axis."""
+        """Peaks up and down, early and late, and values of all steps next to them: nothing lies over an axis."""
         column = Column(fixture.elastic(self.folder / "run"))
         column.peaks = {name: 1.01 * column.peak(name) for name in ("input_ax", "surface_ax")}
         plt.rcParams.update(STYLE)

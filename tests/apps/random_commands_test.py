@@ -23,7 +23,7 @@ VALUES = ("", " ", "0", "1", "-1", "2", "1e300", "nan", "1e-300", "9999999999999
           "scene.toml", "column.toml", "done", "mine", "precious.txt", "new", "new/deeper", "..", ".", "/dev/null",
           "/proc/version", "done/history.h5", "broken.h5", "é\u202e$(touch pwned)", "`touch pwned`", "; touch pwned",
           "-h", "--", "x" * 300, "%s%n", "title=\"'\\\"\"", "undrained", "convert", "report", "yield", "s0001")
-PATIENCE_OF_ONE = 2  # seconds; what runs longer is told to end
+PATIENCE_OF_ONE = 2  # seconds; what runs longer is stopped
 
 
 class RandomCommands(AppTest):
@@ -52,7 +52,7 @@ class RandomCommands(AppTest):
                 process.send_signal(signal.SIGTERM)
                 said = process.communicate(timeout=TIME_LIMIT)
                 if process.returncode == -signal.SIGTERM:
-                    return 130, "told to end before it had begun"
+                    return 130, "stopped before it had begun"
         return process.returncode, said[0] + said[1]
 
     def test_each_program(self):

@@ -141,7 +141,7 @@ class Reports(ReportTest):
         self.assertIn('<li class="attention"><strong>Rate:', self.report("fast"))
 
     def test_started_from_python(self):
-        """What goes on and what repeats are calls, not commands of a shell."""
+        """What continues and what repeats are calls, not commands of a shell."""
         shutil.copytree(self.runs / "cyclic", self.folder / "out")
         provenance = self.folder / "out/provenance.txt"
         for function in ("isostat.column.run", "isostat.run"):
@@ -190,7 +190,7 @@ class Reports(ReportTest):
         self.assertNotIn("one page", result.stdout)
 
     def test_a_title_is_words(self):
-        """Neither markup nor formula, whatever stands in it."""
+        """Neither markup nor formula, whatever is in it."""
         title = "<script>alert(1)</script> $x_{ % $ \\frac{"
         scene = (self.runs / "cyclic.toml").read_text(encoding="utf-8").replace('"tiny"', f"'{title}'")
         self.assertIn(title, scene)
@@ -202,7 +202,7 @@ class Reports(ReportTest):
         self.assertIn(html.escape(title), text)
 
     def test_python_of_the_working_folder_is_left_alone(self):
-        """Whoever wrote it: a folder of results from a stranger may hold anything."""
+        """An untrusted folder of results may hold anything."""
         shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
         shutil.rmtree(self.folder / "cyclic/figures")
         shutil.copy(self.runs / "cyclic.toml", self.folder)

@@ -60,7 +60,7 @@ class LiquefactionResistance(AppTest):
         self.assert_done(result)
         fit = json.loads((self.folder / "out/resistance.json").read_text(encoding="utf-8"))["fit"]
         self.assertEqual(fit["runs"], 2, "both liquefy")
-        self.assertIn("whose error two runs cannot tell", result.stdout)
+        self.assertIn("whose error two runs cannot give", result.stdout)
         self.assertIsNone(fit["b_error"])
         self.assertIsNone(fit["R2"])
         self.assertNotIn("failed", result.stderr)
@@ -123,7 +123,7 @@ class LiquefactionResistance(AppTest):
         self.assertEqual(self.outcome(), self.outcome("at_once"))
 
     def test_a_run_killed_between_two_names_of_its_checkpoint(self):
-        """It goes on from there, and is not begun anew."""
+        """It continues from there, and is not begun again."""
         arguments = (self.scene, "--ratios", "0.1", "-n", "1", "--cycles", "15", "--no-figures", "-o", "out",
                      "--set", "output.checkpoint=1e-9 min")
         checkpoint = self.folder / "out/runs/csr0.1_seed1/checkpoint"
@@ -143,11 +143,11 @@ class LiquefactionResistance(AppTest):
 
     def test_refusals(self):
         for ratios, parts in (("0.1,abc", ("abc", "0.10,0.15")), ("0", ('"0"', "(0, 1]")), ("0.2,2", ('"2"',)),
-                              ("0.1,0.1", ("0.1 stands twice", "--realisations")), (",", ("no number",))):
+                              ("0.1,0.1", ("0.1 appears twice", "--realisations")), (",", ("no number",))):
             self.assert_refused(self.run_it("--ratios", ratios, "-o", "out"), "--ratios", *parts)
         monotonic = self.write("monotonic.toml", tiny_scene(stages=MONOTONIC.format(steps=10)))
         self.assert_refused(self.run_it(*RATIOS, "-o", "out", scene=monotonic), "no cyclic stage", "undrained-cyclic")
-        self.assert_refused(self.run_it(*RATIOS, scene="nowhere.toml"), "nowhere.toml", "is not there")
+        self.assert_refused(self.run_it(*RATIOS, scene="nowhere.toml"), "nowhere.toml", "does not exist")
         packing = self.write("packing.h5", "")
         self.assert_refused(self.run_it(*RATIOS, "-o", "out", "--set", f"specimen.file={packing}",
                                         scene=self.write("triaxial.toml", TRIAXIAL)), "specimen.file",

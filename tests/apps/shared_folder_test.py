@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two runs in one folder: the second is refused whether it would start anew or go on, the first does not notice, and
-its folder is free as soon as it has ended, however it has."""
+"""Two runs in one folder: the second is refused whether it would start again or continue, the first does not notice,
+and its folder is free as soon as it has ended, however it has."""
 import contextlib
 import os
 import shutil
@@ -45,7 +45,7 @@ class SharedFolder(AppTest):
         with self.halted(command) as first:
             for use in ("--overwrite", "--resume"):
                 self.assert_refused(self.run_app(program, *arguments, "-o", "out", "-q", use),
-                                    "out: another program is at work in it", "--output")
+                                    "out: another program is using it", "--output")
             first.send_signal(signal.SIGCONT)
             self.assertEqual(first.wait(timeout=TIME_LIMIT), 0)
         self.assertEqual(results(self.folder / "out"), results(self.folder / "whole"))

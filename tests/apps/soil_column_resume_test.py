@@ -73,7 +73,7 @@ class Resume(ColumnTest):
         before = contents(self.folder / "out")
         result = self.run_column(*arguments, "--resume")
         self.assert_done(result)
-        self.assertIn("this run has finished, there is nothing to resume", result.stdout)
+        self.assertIn("this run has finished; there is nothing to resume", result.stdout)
         self.assert_refused(self.run_column(*arguments, *settings(motion__0__amplitude="0.03 g"), "--resume"),
                             "another scene")
         self.assertEqual(contents(self.folder / "out"), before)
@@ -129,10 +129,10 @@ class MPIRanks(ColumnTest):
                         time.sleep(0.3)
                     message = self.message_of(process)
                 self.assertIn("interrupted at step", message)
-                self.assertIn("go on with --resume", message)
+                self.assertIn("continue with --resume", message)
 
     def test_a_rank_is_killed(self):
-        """In the midst of a step, which waits for all ranks: the others end too, and the run goes on."""
+        """In the midst of a step, which waits for all ranks: the others end too, and the run continues."""
         options = settings(analysis__duration="3 s", output__checkpoint="1e-9 min")
         self.assert_done(self.run_on_ranks(3, self.scene, "-o", "whole", *options))
         checkpoint = self.folder / "out/checkpoint/previous.h5"
@@ -198,7 +198,7 @@ class MPIRanks(ColumnTest):
         checkpoint = self.folder / "out/checkpoint/last.h5"
         _, said = self.stop_when(checkpoint.exists, checkpoint, signal.SIGTERM, self.ranks(2, *options),
                                  send=lambda _, number: os.kill(self.pid(0), number))
-        self.assertIn("go on with --resume", said)
+        self.assertIn("continue with --resume", said)
         whole = history(self.folder / "whole")
         with h5py.File(checkpoint) as file:
             self.assertGreaterEqual(file.attrs["step"], 256)

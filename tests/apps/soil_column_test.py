@@ -58,7 +58,7 @@ class Scenes(ColumnTest):
             self.assertEqual(node["displacement_x"].shape, (21, len(file["node_depth"])))
             self.assertFalse(node["displacement_x"][:, -1].any(), "the base is what they count from")
             self.assert_close(file["peak_displacement"][0], np.abs(u).max(), 1e-9, "digits of the history")
-            self.assert_close(file["peak_velocity"][0], np.abs(v).max(), 1e-4, "half a step beside a row")
+            self.assert_close(file["peak_velocity"][0], np.abs(v).max(), 1e-4, "half a step from a row")
             for name in ("velocity", "displacement"):
                 self.assert_near(file[f"peak_{name}"][()].max(), summary[f"peak_{name}"], 5e-13, digits)
                 at = list(file["node_depth"]).index(summary[f"peak_{name}_depth"])

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""isostat study: every study says what it would run; a tiny one runs, is stopped, goes on, fails, reports."""
+"""isostat study: every study says what it would run; a tiny one runs, is stopped, continues, fails, reports."""
 import pathlib
 import signal
 
@@ -19,7 +19,7 @@ def sleep(results, seconds):
     (results.parent / "begun").touch()
     time.sleep(seconds)
     if (results.parents[1] / "fail").exists():
-        raise ValueError("told to fail")
+        raise ValueError("on purpose")
     return {"slept": seconds}
 
 
@@ -110,7 +110,7 @@ class Studies(AppTest):
                 process.send_signal(signal.SIGTERM)
                 _, err = process.communicate(timeout=TIME_LIMIT)
             self.assertEqual(process.returncode, 130, err)
-            self.assertIn("the same command goes on", err)
+            self.assertIn("the same command continues", err)
         log = (self.folder / "out/logs/test1.log").read_text(encoding="utf-8")
         self.assertIn(" steps, the last ", log, "it was resumed")
         self.assertEqual(self.report(), "test1 0")
@@ -123,7 +123,7 @@ class Studies(AppTest):
         self.write("out/fail", "")
         result = self.study("tiny", "-o", "out")
         self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertIn("failed: 1 of 4 runs failed, the first of them call2: ValueError: told to fail", result.stderr)
+        self.assertIn("failed: 1 of 4 runs failed, the first of them call2: ValueError: on purpose", result.stderr)
         self.assertEqual(self.report(), "test1 test2 call1 3", "the others are kept and reported")
         (self.folder / "out/fail").unlink()
         self.assert_done(self.study("tiny", "-o", "out"))

@@ -217,18 +217,18 @@ def contents(folder):
 
 
 def table(path):
-    """Rows of a CSV file, but for times."""
+    """Rows of a CSV file, except for times."""
     with open(path, newline="", encoding="utf-8") as file:
         return [{name: cell for name, cell in row.items() if not name.startswith("wall")}
                 for row in csv.DictReader(file)]
 
 
-TIMED = {"provenance.txt", "times.json", "summary.json", "summary.txt"}  # they tell of times, and of calls
+TIMED = {"provenance.txt", "times.json", "summary.json", "summary.txt"}  # they hold times and calls
 
 
 def results(path):
-    """A file, or contents() of a folder, without what tells of times and calls, checkpoints, which may be others, and
-    what a campaign keeps beside its runs."""
+    """A file, or contents() of a folder, without times and calls, checkpoints, which may be others, and
+    what a campaign keeps next to its runs."""
     if path.is_file():
         return {"": path.read_bytes()}
     left_out = TIMED | {"checkpoint", "queue", "logs"}

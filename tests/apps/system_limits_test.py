@@ -36,8 +36,8 @@ class SystemLimits(FailingRuns):
                 self.assert_refused(result, os.strerror(code), "--output")
 
     def test_largest_file(self):
-        """ulimit -f: whatever the limit is, files are whole, and the run goes on without it to the same results. (Open
-        MPI has files of its own, and ends a column by itself.)"""
+        """ulimit -f: whatever the limit is, files are whole, and the run continues without it to the same results.
+        (Open MPI has files of its own, and ends a column by itself.)"""
         self.assert_done(self.run_app("element_test", *self.arguments, *OUTPUT))
         whole = results(self.folder / "out")
         largest = max(path.stat().st_size for path in (self.folder / "out").rglob("*") if path.is_file())
@@ -83,7 +83,7 @@ class SystemLimits(FailingRuns):
         closed = subprocess.run(["sh", "-c", '"$0" "$@" <&- >&- 2>&-', *command[:-1]], cwd=self.folder, check=False)
         self.assertEqual(closed.returncode, 0)
         self.assertEqual(results(self.folder / "out"), whole)
-        self.assertEqual((self.folder / "out/.lock").read_bytes(), b"", "it is not what is told that it takes")
+        self.assertEqual((self.folder / "out/.lock").read_bytes(), b"", "it does not take the messages")
 
     def test_a_closed_terminal_and_the_limit_of_a_queue(self):
         for number in (signal.SIGHUP, signal.SIGXCPU):

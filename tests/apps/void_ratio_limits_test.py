@@ -50,7 +50,7 @@ class VoidRatioLimits(AppTest):
                               (["--set", "grading.grain=5"], ("grading.grain", "grading.grains"))):
             self.assert_refused(self.run_app("void_ratio_limits", scene, "-o", "out", *QUICK, *change), *parts)
             self.assertFalse((self.folder / "out").exists())
-        self.assert_refused(self.run_app("void_ratio_limits", "nowhere.toml"), "nowhere.toml", "is not there")
+        self.assert_refused(self.run_app("void_ratio_limits", "nowhere.toml"), "nowhere.toml", "does not exist")
         self.assert_refused(self.run_app("void_ratio_limits", scene, "-o", "out", "--fall", "0.5"), "fall = 0.5",
                             ">= 1")
         self.assertFalse((self.folder / "out").exists())

@@ -81,7 +81,7 @@ std::string SceneMutator::number()
     }
 }
 
-/// A bound of the range, or the number beside it.
+/// A bound of the range, or the number next to it.
 std::string SceneMutator::bound(const Key &key)
 {
   double x = below(2) == 0 ? key.range.low : key.range.high;

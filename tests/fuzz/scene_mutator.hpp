@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Changes of a scene that know its schema: most of what comes out is TOML, and much of it is a scene.
+// Changes of a scene that know its schema: most of the results are TOML, and much of it is a scene.
 #pragma once
 #include "base/scene/schema.hpp"
 

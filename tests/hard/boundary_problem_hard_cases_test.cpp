@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boundary-value problems without an answer, or with a mesh that hardly allows one: what is told, and what is kept.
+// Boundary-value problems without an answer, or with a mesh that hardly allows one: what is reported, and what is kept.
 #include "coupling/batch/rve_material.hpp"
 #include "fem/material/mohr_coulomb.hpp"
 #include "fem/solve/dynamics.hpp"
@@ -85,7 +85,7 @@ MotionSpec frozen()
 } // namespace
 
 /// A strip load that grows beyond what the soil bears: the last equilibrium below the limit load stays, can be saved,
-/// and a smaller load goes on from there.
+/// and a smaller load continues from there.
 TEST(BoundaryProblemHardCases, ALoadBeyondTheLimitLoad)
 {
   constexpr double cohesion = 10e3, bears = (2 + std::numbers::pi) * cohesion; // Prandtl 1921
@@ -108,7 +108,7 @@ TEST(BoundaryProblemHardCases, ALoadBeyondTheLimitLoad)
       statics.step(0.1);
   });
   EXPECT_THAT(message, AllOf(HasSubstr("no equilibrium in step"), HasSubstr("the last with equilibrium")));
-  std::printf("stands at %.3f of the limit load\n", statics.time());
+  std::printf("in equilibrium up to %.3f of the limit load\n", statics.time());
   EXPECT_NEAR_BECAUSE(statics.time(), 1, 0.06, "two quadratic elements below the half strip, sub-steps of 0.006");
   const Stress last = statics.stresses()[0];
   const SolverState saved = statics.save();

@@ -42,7 +42,7 @@ bool same(const RveState &a, const RveState &b)
          g.virial == h.virial && g.time == h.time && g.time_step == h.time_step && g.step == h.step;
 }
 
-/// A refused increment: says why, changes nothing, and the element goes on as one that was never asked.
+/// A refused increment: says why, changes nothing, and the element continues as one that was never asked.
 template <typename Increment>
 void expect_rejected(Rve &rve, const Increment &increment, const std::vector<std::string> &words)
 {
@@ -182,7 +182,7 @@ TEST(RveHardCases, WhatIsNotANumberIsRefused)
   EXPECT_EQ(rve.undrained(simple_shear(1e-4)).stress, twin.undrained(simple_shear(1e-4)).stress);
 }
 
-/// A tension, and a deviator that no sand bears: the servo would pull or squeeze for ever.
+/// A tension, and a deviator that no sand bears: the servo would pull or squeeze forever.
 TEST(RveHardCases, AStressOutOfReachIsRefused)
 {
   Rve rve(test::periodic_specimen(grains, 10), {}), twin(test::periodic_specimen(grains, 10), {});
@@ -229,7 +229,7 @@ TEST(RveHardCases, ACellTooNarrowForItsGrainsIsRefused)
     }
 }
 
-/// Refused when a grain could touch another one through two faces; it then goes on as one that was never asked, with
+/// Refused when a grain could touch another one through two faces; it then continues as one that was never asked, with
 /// all its contacts.
 TEST(RveHardCases, ACellThatBecomesTooNarrowIsRefusedAndWidenedAgain)
 {

@@ -112,7 +112,7 @@ TEST(SlopeHardCases, ALiquefiedSlopeFlowsAndComesToRestUnderItsStaticShear)
       start[4] / 1e3, slope.largest_energy(), energy.residual());
   EXPECT_GT(gamma, 0.5); // more than 1 with other instruction sets, which make other packings
   EXPECT_GT(cell.flips, 0u);
-  ASSERT_TRUE(slope.is_at_rest()) << "what is left of the packings' strength stops it";
+  ASSERT_TRUE(slope.is_at_rest()) << "what remains of the packings' strength stops it";
   EXPECT_NEAR_BECAUSE(end[4], start[4], 0.02 * start[4],
                       "equilibrium of what hardly moves: statics allow no other shear");
   const double fallen = 0.5 * 3900 * std::pow(9.81 * 0.12 * slope.run().time(), 2);

@@ -5,9 +5,9 @@ specimens of other seeds than those it is given. Not part of the usual tests: ct
 cores.
 
 First a search over wide bounds with few specimens, then one around what it found with many. Specimens of 1,000 grains
-scatter: with these two curves one per curve tells friction to 1.4 deg, the rolling limit to 27 % and the modulus to 7 %
+scatter: with these two curves one per curve gives friction to 1.4 deg, the rolling limit to 27 % and the modulus to 7 %
 (standard deviations, from derivatives of the curves), and n of them to that over sqrt(n), the laboratory's included: a
-hundred and a hundred tell the rolling limit to 4 %. Undrained paths of loose specimens scatter too much to help.
+hundred and a hundred give the rolling limit to 4 %. Undrained paths of loose specimens scatter too much to help.
 The rolling limit shows below some 0.3 only, where moments reach it, and the more the stiffer rolling is (alpha_r = 1
 here; with 0.3 a limit of 0.35 and one of 1 have the same curves)."""
 import concurrent.futures
@@ -69,7 +69,7 @@ columns = {{ strain = "eps_a (-)", volume = "eps_v (-)", axial = "sigma_a (Pa)",
 
 
 def text(key, value):
-    """As it stands in a plan."""
+    """As it is in a plan."""
     return f'"{value:g} {UNITS[key]}"' if UNITS[key] else f"{value:g}"
 
 
@@ -109,7 +109,7 @@ def run_one(folder, name, preparation, seed):
 
 
 def write_laboratory(folder):
-    """The mean over many specimens, as the laboratory would tell it."""
+    """The mean over many specimens, as the laboratory would report it."""
     with concurrent.futures.ThreadPoolExecutor(CORES) as pool:
         for name, preparation in CURVES.items():
             curves = pool.map(lambda seed: run_one(folder, name, preparation, seed), LABORATORY_SEEDS)
@@ -120,7 +120,7 @@ def write_laboratory(folder):
 
 class Recovery(unittest.TestCase):
     def setUp(self):
-        kept = os.environ.get("ISOSTAT_KEEP")  # a folder: results stay, and the next call goes on from them
+        kept = os.environ.get("ISOSTAT_KEEP")  # a folder: results stay, and the next call continues from them
         self.folder = pathlib.Path(kept or tempfile.mkdtemp())
         self.folder.mkdir(exist_ok=True)
         if not kept:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs that are killed (SIGKILL) at random moments, again and again, and go on with another number of threads, jobs or
-ranks: what is left in the end are the bytes of a run that nobody disturbed. Not part of the usual tests: ctest --preset
+"""Runs that are killed (SIGKILL) at random moments, again and again, and continue with another number of threads, jobs
+or ranks: the final bytes are those of an undisturbed run. Not part of the usual tests: ctest --preset
 long.
 
 ISOSTAT_KILLS   of each program (20)          ISOSTAT_SEED    draws the same moments again
@@ -85,7 +85,7 @@ class Kills(AppTest):
 
     @staticmethod
     def folder_of_run(parts):
-        """As a user does: from the checkpoint, or anew."""
+        """As a user does: from the checkpoint, or again."""
         if any(parts.glob("checkpoint/*.h5")):
             return ["--resume"]
         return ["--overwrite"] if parts.exists() else []

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A packing that liquefies and stiffens in each half of a cycle, and one that rests, for 1e7 steps each or as many as
-asked for, in pieces that end by SIGTERM and go on by --resume: memory, volume, energy, momentum and the size of the
+asked for, in pieces that end by SIGTERM and continue by --resume: memory, volume, energy, momentum and the size of the
 files stay what they are. Not part of the usual tests: ctest --preset long.
 
-ISOSTAT_SOAK_STEPS    of time (1e7)       ISOSTAT_SOAK_FOLDER   keeps the runs, and goes on with what is there
+ISOSTAT_SOAK_STEPS    of time (1e7)       ISOSTAT_SOAK_FOLDER   keeps the runs, and continues with what is there
 ISOSTAT_SOAK_MINUTES  of a piece (0.5)
 """
 import json
@@ -51,7 +51,7 @@ class Soak(AppTest):
         size = sum(path.stat().st_size for path in self.results.rglob("*") if path.is_file()) / 1e6
         print(f"  {name}: {len(pieces)} pieces, {pieces[0]:.1f} MB at first, {pieces.max():.1f} MB at most; files "
               f"{size:.1f} MB", flush=True)
-        own = (pieces - 6 * (histories - histories[0]))[1:]  # of those that went on, which read what there was
+        own = (pieces - 6 * (histories - histories[0]))[1:]  # of those that continued, which read what there was
         self.assertGreater(len(own), 1, "too few pieces: give ISOSTAT_SOAK_MINUTES")
         early, late = np.array_split(own, 2)
         self.assert_below(late.max() / early.max(), 1.05, "rows are added to copies of history.h5; lists of pairs are "

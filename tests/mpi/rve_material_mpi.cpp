@@ -135,7 +135,7 @@ void exchange_in_parts()
     }
 }
 
-/// One element fails on its rank: all ranks stop with one message, and can go on.
+/// One element fails on its rank: all ranks stop with one message, and can continue.
 void fail_on_purpose(const RveMaterialSettings &settings)
 {
   RveMaterial material(specimens(), settings, MPI_COMM_WORLD);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of a campaign and what is in their way: another process, files of somebody, another scene, a damaged checkpoint,
+"""Runs of a campaign and what is in their way: another process, a user's files, another scene, a damaged checkpoint,
 a signal from outside; and the folder of a campaign."""
 import concurrent.futures
 import os
@@ -81,7 +81,7 @@ class CampaignTest(FolderTest):
                         if str(long.scene).encode() in file.read():
                             os.kill(int(path.name), signal.SIGTERM)
         threading.Thread(target=end).start()
-        with self.assertRaisesRegex(isostat.RunFailure, "1 runs were stopped by somebody else, the first of them long"):
+        with self.assertRaisesRegex(isostat.RunFailure, "1 runs were stopped by another process, the first .* long"):
             self.complete(long)
 
     def test_what_the_engine_has_lost(self):
@@ -106,7 +106,7 @@ class CampaignTest(FolderTest):
             self.assertFalse(try_lock(file))
 
     def test_engines(self):
-        for name, parts in (("nothere.json", "is not there"), ("pigeons", "is not an engine")):
+        for name, parts in (("nothere.json", "does not exist"), ("pigeons", "is not an engine")):
             with self.assertRaisesRegex(isostat.InputError, parts), campaign.engine(name):
                 pass
 

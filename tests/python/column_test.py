@@ -233,7 +233,7 @@ class ColumnTest(ToleranceTest):
         self.assert_near(np.max(np.abs(found / [p_modulus, SHEAR] - 1)), 0, 1e-9, "directions are searched to rounding")
 
     def test_members_of_an_ensemble(self):
-        """The next seeds, as many as a point has packings, or the next lot; other layers stay."""
+        """The next seeds, as many as a point has packings, or the next draw; other layers stay."""
         grains = {"thickness": "2 m", "cells": 2, "material": "grains", "realisation": 1}
         scene = column.ColumnScene(SCENE).with_(**{"grains.library": "library.h5", "grains.realisations": 3}).to_dict()
         scene["layer"] = [grains, {**grains, "mixed_realisations": 4}, scene["layer"][1]]

@@ -87,7 +87,7 @@ class PackingsTest(ToleranceTest):
             self.assert_close(one @ one.T, other @ other.T, 1e-14, "round-off of a rotation")
         parts = [np.linalg.solve(s.cell, (s.positions - s.positions[0]).T) for s in (back, written)]
         moved = parts[0] - parts[1]
-        self.assert_near(moved, np.round(moved), 1e-14, "whole edges, but for round-off")
+        self.assert_near(moved, np.round(moved), 1e-14, "whole edges, except for round-off")
 
     def test_what_a_format_cannot_hold_is_said(self):
         heavy = isostat.Specimen(isostat.Snapshot.from_spheres(CENTRES, [R] * 3, cell=TILTED, density=2717.3))

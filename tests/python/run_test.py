@@ -119,7 +119,7 @@ class RunTest(FolderTest):
         self.assertEqual(later.summary["reversals"], 4)
         self.assertEqual(later.summary["ended"], whole.summary["ended"])
         np.testing.assert_array_equal(later.snapshot.positions, whole.snapshot.positions)
-        with self.assertRaisesRegex(isostat.InputError, "cycles = 1, but the checkpoint has 2: an end can be put off"):
+        with self.assertRaisesRegex(isostat.InputError, "but the checkpoint has 2: only a later end is possible"):
             self.run_scene_of(short, self.folder / "longer", resume=True)
 
     def test_callbacks_see_the_packing(self):

@@ -66,7 +66,7 @@ class SceneTest(ToleranceTest):
                              ({"contact": {"rolling": {"limit": None}}}, "^contact.rolling.limit = None: must be"),
                              ({"grading": None}, "^grading = None: must be"),
                              ({"grading": {3: 4}}, "^grading: 3: names of keys are text"),
-                             ({"grading": {"gra ins": 4}}, "^scene: grading.gra ins = 4; is no key of a scene"),
+                             ({"grading": {"gra ins": 4}}, "^scene: grading.gra ins = 4; is an unknown key"),
                              ({"grading": {"grains": -3}, "title": "t"}, "^scene: grading.grains = -3; must be"),
                              ({"specimen": {"relative_density": 0.5, "void_ratio": 0.6}},
                               r"^scene: specimen.void_ratio = 0.6; excludes specimen.relative_density \(scene\)")):
@@ -82,7 +82,7 @@ class SceneTest(ToleranceTest):
             isostat.Scene(TEXT).with_(**{"contact.law": "hertz-mindlin"})
         other = isostat.Scene({**isostat.Scene(TEXT).to_dict(), "contact": {"law": "hertz-mindlin"}})
         self.assertEqual(other.law.name, "hertz-mindlin")
-        with self.assertRaisesRegex(isostat.InputError, "nowhere.toml: is not there"):
+        with self.assertRaisesRegex(isostat.InputError, "nowhere.toml: does not exist"):
             isostat.Scene("nowhere.toml")
         self.assertTrue(issubclass(isostat.InputError, ValueError))
 

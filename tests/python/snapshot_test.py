@@ -106,7 +106,7 @@ class SnapshotTest(ToleranceTest):
                 (1e-6 * CENTRES, [1e-9] * 3, {"cell": [5e-9] * 3}, "the largest radius is 1e-09 m; expected at least"),
                 (CENTRES, [R] * 3, {"box": BOX, "density": 2.65}, "the grain density is 2.65 kg/m3; expected 30 to"),
                 (0.5 * CENTRES, [R] * 3, {"box": 2 * BOX}, "grains 0 and 1 overlap by"),
-                (CENTRES, [R] * 3, {"box": BOX - R / 2}, "stands beyond a wall of the box by 50 %")):
+                (CENTRES, [R] * 3, {"box": BOX - R / 2}, "reaches beyond a wall of the box by 50 %")):
             with self.subTest(words):
                 with self.assertRaisesRegex(isostat.InputError, words):
                     make(centres, radii, **more)

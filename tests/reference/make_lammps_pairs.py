@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from make_fixtures import triples, write  # noqa: E402  (beside this file, wherever it is called from)
+from make_fixtures import triples, write  # noqa: E402  (next to this file, wherever it is called from)
 
 R1, R2, STEP = 2e-4, 1.5e-4, 5e-8
 YOUNG, POISSON = 64.96e9, 0.12

@@ -72,7 +72,7 @@ def check(binary, scene, folder, n):
         if (one / file).read_bytes() != (more / file).read_bytes():
             problems.append(f"{scene.stem}: {file} of {n} ranks is not that of one")
     if (pathlib.Path(folder) / "in_situ.h5").read_bytes() != (HERE / "in_situ.h5").read_bytes():
-        problems.append(f"{scene.stem}: states in situ were made anew: columns/in_situ.h5 is of another recipe")
+        problems.append(f"{scene.stem}: states in situ were made again: columns/in_situ.h5 is of another recipe")
     return problems
 
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every scene of this folder against its expected history: `name.toml` beside `name.expected.csv`.
+"""Every scene of this folder against its expected history: `name.toml` next to `name.expected.csv`.
 
     regression_test.py BIN_FOLDER [--regenerate]
 
 Rows must agree in number. Rounding that differs (another instruction set) grows by orders of magnitude within a
 thousand steps and then opens or closes single contacts, so: up to step 300 every column agrees within 1e-6 of its
-largest value, but for those that count yielding contacts (a few hardly loaded ones sit on the threshold), within 5e-3;
-later the stresses, strains and energies agree within 1e-3. --regenerate rewrites the expectations; read the diff.
+largest value, except for those that count yielding contacts (a few hardly loaded ones sit on the threshold), within
+5e-3; later the stresses, strains and energies agree within 1e-3. --regenerate rewrites the expectations; read the diff.
 """
 import csv
 import pathlib

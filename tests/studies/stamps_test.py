@@ -25,7 +25,7 @@ def pages():
 
 
 def says_when(page):
-    """Whether the paragraph that tells how the page was made says that it is not of today's program."""
+    """Whether the paragraph on how the page was made says that it is not of today's program."""
     made = re.search(r"^Made (.+\n)+", (ROOT / page).read_text(encoding="utf-8"), re.M)
     return bool(made and STALE.search(made[0]))
 

@@ -23,7 +23,7 @@ inline void review_time_step(Assembly &a)
   a.settings.time_step = 0.8 * critical_step_bound(a.law(), a.packing(), nullptr, a.contacts());
 }
 
-/// So many steps of the same displacement gradient, and the forces after them.
+/// This many steps of the same displacement gradient, and the forces after them.
 inline void strain(Assembly &a, const Mat3 &gradient, int steps)
 {
   for (int step = 0; step < steps; ++step)

@@ -12,7 +12,7 @@
 //   EXPECT_NEAR_BECAUSE(sum, 1, round_off);
 //   EXPECT_NEAR_BECAUSE(pressure, 1e5, 1e5 * round_off);
 //
-// A failure prints the reason: it tells whether the code or the argument for the tolerance is wrong. Each form has an
+// A failure prints the reason: it says whether the code or the argument for the tolerance is wrong. Each form has an
 // ASSERT twin. The Python twin is `tests/apps/support.py` (assert_near, assert_close, assert_below).
 #pragma once
 

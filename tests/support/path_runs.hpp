@@ -69,7 +69,7 @@ inline Result run(std::vector<Stage> stages, const Snapshot &initial, std::uint6
   return result;
 }
 
-/// Stops at each of these steps and goes on from what a checkpoint would hold, to the end of `whole`.
+/// Stops at each of these steps and continues from what a checkpoint would hold, to the end of `whole`.
 inline void expect_same_end(const Stage &stage, const Snapshot &initial, const std::vector<std::uint64_t> &stops,
                             const Snapshot &whole)
 {

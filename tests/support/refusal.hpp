@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a user is told whose scene is refused.
+// The message for a user whose scene is refused.
 #pragma once
 #include "base/error.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Periodic packings go the same way to the bit on any number of threads, from a checkpoint and from a saved state, also
-// where the cell flips meanwhile.
+// Periodic packings go the same way, bit for bit, on any number of threads, from a checkpoint and from a saved state,
+// also where the cell flips meanwhile.
 #include "tests/support/cells.hpp"
 
 namespace isostat
@@ -76,7 +76,7 @@ void expect_same_state(const AssemblyState &a, const AssemblyState &b)
     EXPECT_TRUE(same_bits(a.cell.*m, b.cell.*m));
 }
 
-/// The state after so many steps of gradient_at() from a restored one.
+/// The state after this many steps of gradient_at() from a restored one.
 AssemblyState after(Assembly &a, const AssemblyState &from, int steps)
 {
   a.restore(from);

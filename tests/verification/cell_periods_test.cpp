@@ -35,7 +35,7 @@ Snapshot in_periods(Snapshot s, const Mat3 &u)
   return s;
 }
 
-/// Overlaps are 1e-4 of a diameter, and an image stands elsewhere in its last digit.
+/// Overlaps are 1e-4 of a diameter, and an image is elsewhere in its last digit.
 constexpr Tolerance last_digit{1e-9, "round-off of coordinates, 1e-16, over overlaps of 1e-4, times the edges' length"};
 
 double stress_apart(const Assembly &a, const Assembly &b)

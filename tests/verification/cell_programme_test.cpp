@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stages of a test in a periodic cell: strains and stresses that are to be kept are kept, loads turn where they
-// should, a stopped run goes on to the same bits.
+// The stages of a test in a periodic cell: prescribed strains and stresses are kept, loads turn where they
+// should, a stopped run continues to the same bits.
 #include "tests/support/near.hpp"
 #include "tests/support/path_runs.hpp"
 #include "tests/support/periodic.hpp"

@@ -94,7 +94,7 @@ TEST(Flip, ChangesForcesToRoundOffAndKeepsContactsAndHistories)
       a.compute_forces();
       a.deform(simple_shear(step));
     }
-  // a twin that has the edges after the flip beforehand: its grains stand elsewhere, and its cell does not flip
+  // a twin that has the edges after the flip beforehand: its grains are elsewhere, and its cell does not flip
   const Mat3 combination = (last.cell->edges.inverse() * a.cell()->edges).array().round();
   ASSERT_GT((combination - Mat3::Identity()).norm(), 0.5);
   EXPECT_NEAR_BECAUSE(combination.determinant(), 1, 1e-12,

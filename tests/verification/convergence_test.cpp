@@ -353,7 +353,7 @@ PackingSeries sheared_packing(const std::string &title, const Snapshot &s, doubl
 
 TEST(Convergence, ElasticPackingIsOfSecondOrder)
 {
-  // A strain so small that no contact opens, closes or yields, and so large that the errors stand above round-off
+  // A strain so small that no contact opens, closes or yields, and so large that the errors are above round-off
   // (1e-16 of positions is 1e-9 of the way of the grains).
   const PackingSeries s = sheared_packing("elastic packing, no damping", packing_at_rest(elastic_law()), 1e-7, 0);
   EXPECT_EQ(s.opened + s.closed + s.sliding, 0u);

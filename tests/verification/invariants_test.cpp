@@ -85,7 +85,7 @@ Snapshot at_rest(const std::string &name)
 //     P = sum m v_k-1/2        L = sum m x_k x v_k-1/2 + I w_k-1/2
 //
 // exactly: x_k x (m v_k+1/2) = x_k x (m v_k-1/2) + dt x_k x F_k, the last term and dt T_k cancel in the sum, and
-// x_k+1 x v_k+1/2 = x_k x v_k+1/2 since the way is along v_k+1/2. What is left is round-off.
+// x_k+1 x v_k+1/2 = x_k x v_k+1/2 since the way is along v_k+1/2. What remains is round-off.
 TEST(Momentum, OfAnIsolatedClusterIsKeptToRoundOff)
 {
   for (const double drift : {0.0, 0.1})
@@ -144,7 +144,7 @@ class PackingAtRest : public testing::TestWithParam<const char *>
 
 TEST_P(PackingAtRest, RedundancyIsHalfTheCoordinationNumber)
 {
-  // compressed at 2 or 10 deg and then given 18 deg: nothing yields, but for one weak contact that YADE counts as
+  // compressed at 2 or 10 deg and then given 18 deg: nothing yields, except for one weak contact that YADE counts as
   // rolling
   Snapshot s = at_rest(GetParam());
   const std::size_t all = s.contacts.size();

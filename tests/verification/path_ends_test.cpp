@@ -16,7 +16,7 @@ namespace
 {
 using namespace test;
 
-/// A cyclic test by its own kind and as a path: what is said of it, and when it liquefies.
+/// A cyclic test by its own kind and as a path: what is reported of it, and when it liquefies.
 void expect_same_verdict(const CyclicConstantVolume &own_stage, Path path, const Snapshot &specimen, double sigma_v)
 {
   path.turn.low = own_stage.average(sigma_v) - own_stage.amplitude(sigma_v);
@@ -113,7 +113,7 @@ TEST(PathRows, OfCyclesOfStrainAreDense)
     EXPECT_GE(rows[half], 45u) << "half cycle " << half; // a row lies a step beyond its strain
 }
 
-/// Simple shear by its stress alone: neither q nor the axial strain tells that anything happens.
+/// Simple shear by its stress alone: neither q nor the axial strain shows that anything happens.
 TEST(PathRows, OfAStageThatDrivesNothingGoByEveryComponent)
 {
   Path path;

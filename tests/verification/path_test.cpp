@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The general stage on packings: what each condition keeps is kept, courses are followed, stages end where they should,
-// a stopped run goes on to the same bits.
+// a stopped run continues to the same bits.
 #include "base/error.hpp"
 #include "dem/contact/hertz_mindlin/law.hpp"
 #include "dem/drive/programme.hpp"
@@ -66,8 +66,8 @@ TEST(PathUndrained, SharesOutWhatKeepsTheVolume)
     }
 }
 
-/// The same strains as of the kind "undrained-monotonic", but for round-off, which grows by orders of magnitude within
-/// a thousand steps.
+/// The same strains as of the kind "undrained-monotonic", except for round-off, which grows by orders of magnitude in a
+/// thousand steps.
 TEST(PathUndrained, EqualsTheKindOfItsOwn)
 {
   const Result own = run({test::sheared_to<UndrainedMonotonic>(5e-6)}, cell());

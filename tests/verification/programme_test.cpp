@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Drivers on real packings: stresses that are to be kept are kept, loads turn where they should, runs repeat to the
-// bit.
+// Drivers on real packings: prescribed stresses are kept, loads turn where they should, runs repeat bit
+// for bit.
 #include "base/error.hpp"
 #include "dem/measure/stress.hpp"
 #include "dem/prepare/relative_density.hpp"
@@ -80,7 +80,7 @@ TEST(ServoStages, SetFrictionReachTheirPressureAndComeToRest)
   EXPECT_NEAR_BECAUSE(highest, 220e3, 5e3, "compress ends within 1 %, and the servo may overshoot by as much");
 }
 
-/// With grains that are carried by a servo that answers to them, packings of this size tremble for ever.
+/// With grains that are carried by a servo that answers to them, packings of this size tremble forever.
 TEST(ServoStages, ComeToRestWithLittleDamping)
 {
   Compress compress;

@@ -240,7 +240,7 @@ TEST_P(ReferencePacking, FirstHundredStepsOnEveryInstructionSet)
 TEST_P(ReferencePacking, StressPath)
 {
   // Round-off of 1e-16 grows to 1e-4 of the wall forces within 1,000 steps, and vloose collapses on this path (p' from
-  // 200 to less than 0.1 kPa): there our own runs on AVX-512 and SSE4, equal but for round-off, are 1.6 % of q apart.
+  // 200 to less than 0.1 kPa): there our runs on AVX-512 and SSE4, equal except for round-off, are 1.6 % of q apart.
   const bool collapses = std::string(GetParam()) == "vloose";
   const double tolerance = collapses ? 0.05 : 0.01;
   const PathMisfit m = path_misfit(60000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Columns on a slope: at rest to the bit, downslope whichever way they are shaken, and Newmark's sliding block.
+// Columns on a slope: at rest bit for bit, downslope whichever way they are shaken, and Newmark's sliding block.
 #include "fem/material/composite.hpp"
 #include "fem/material/iwan.hpp"
 #include "fem/solve/dynamics.hpp"
@@ -104,7 +104,7 @@ double sliding_block(const Motion &motion, double end)
   return displacement;
 }
 
-/// A stiff elastic layer on a thin one that is perfectly plastic but for the first 0.01 mm.
+/// A stiff elastic layer on a thin one that is perfectly plastic except for the first 0.01 mm.
 double sliding_column(const Motion &motion, double end)
 {
   MeshSpec mesh;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests that go from balance to balance: every state is balanced, loads turn where they should, paths converge in the
-// increment and hardly depend on the tolerance, energy is accounted for, a stopped run goes on to the same bits.
+// increment and hardly depend on the tolerance, energy is accounted for, a stopped run continues to the same bits.
 #include "dem/drive/programme.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/specimens.hpp"

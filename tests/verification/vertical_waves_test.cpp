@@ -121,7 +121,7 @@ TEST(VerticalWaves, TransferFunctionOfSoilWithAirIsThatOfWood)
   EXPECT_BELOW_BECAUSE(transfer_error(0.99, 0, 5), 1e-5, "second order in 0.1 ms and in 0.5 m, up to 10 Hz");
 }
 
-/// Sand of usual permeability is undrained to P waves but for the layer in which it drains, sqrt(2 c/omega).
+/// Sand of usual permeability is undrained to P waves except for the layer in which it drains, sqrt(2 c/omega).
 TEST(VerticalWaves, PermeableSandIsNearlyUndrained)
 {
   EXPECT_BELOW_BECAUSE(transfer_error(1, 1e-5, 20), 2e-2, "water that leaves through the surface");

@@ -24,7 +24,7 @@ constexpr auto keys_of_law = with_rolling_resistance(std::array{
   Key{.path = "asperity", .field = member<&HertzMindlin::asperity>, .value = "0.1", .range = {1e-3, 1},
       .reason = "because an asperity is a part of its grain",
       .text = "Radius of an asperity over R* = R1 R2/(R1 + R2): there it is as high as a sphere, nearer to the axis "
-              "more pointed. Of no effect with the exponent 1.5."},
+              "more pointed. No effect with the exponent 1.5."},
 });
 // clang-format on
 } // namespace

@@ -31,7 +31,7 @@ struct HertzMindlin final : RollingResistance
 {
   double poisson = 0.12; ///< nu of the grains [-]
   double exponent = 1.5; ///< n of fn ~ u^n [-]
-  double asperity = 0.1; ///< s [-]; of no effect where n is 3/2
+  double asperity = 0.1; ///< s [-]; ignored where n is 3/2
 
   HertzMindlin() { young = 64.96e9; }
   HertzMindlin with(LawFeatures on) const { return with_features(*this, on); }

@@ -24,7 +24,7 @@ struct Observation
 /// What came of an observation.
 struct Verdict
 {
-  std::optional<EndCondition> end = {}; ///< what ends the stage with this step; none: it goes on
+  std::optional<EndCondition> end = {}; ///< what ends the stage with this step; none: it continues
   bool notable = false;                 ///< record a row and, if requested, a snapshot
   std::string event = {};               ///< one line for the log; empty: nothing happened
 };
@@ -48,7 +48,7 @@ struct ServoSpec
   bool operator==(const ServoSpec &) const = default;
 };
 
-/// A stage that waits for balance fails after so many steps.
+/// A stage that waits for balance fails after this many steps.
 inline constexpr std::uint64_t hopeless_steps = 20'000'000;
 
 /// What a stage works with. Its own settings are in the stage, what it remembers is in `state`.
@@ -125,11 +125,11 @@ public:
   /// What they look at.   cost a pass over contacts and grains
   virtual StageFigures figures(const StageContext &c, const Observation &seen) const;
 
-  /// How much of it is done, 0..1; nothing if that cannot be told.
+  /// How much of it is done, 0..1; nothing if that is not known.
   virtual std::optional<double> fraction_done(const DriveState &) const { return std::nullopt; }
 };
 
-/// A stage that takes steps, and may be limited to so many.
+/// A stage that takes steps, and may be limited to this many.
 class SteppedStage : public StageBehaviour
 {
 public:

@@ -14,7 +14,7 @@
 //
 // These authors name no number at which a load "falls off". Here it counts as softening when the load has fallen by
 // more than a tenth of its amplitude below the peak of its half cycle and has not come back to that peak within 0.1 %
-// of axial strain (shear strain gamma 0.15 %). After a turn the load goes through zero on its way to the other side and
+// of axial strain (shear strain gamma 0.15 %). After a turn the load goes through zero on the way to the other side and
 // rises from there: p' near zero at small loads, as in cyclic mobility, is no softening.
 // tested: tests/dem/drive/stages/cyclic_response_test.cpp
 #pragma once

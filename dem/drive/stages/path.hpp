@@ -7,13 +7,13 @@
 //     driven      d eps_k = d lambda, at the rate of the rate control, one way or turning
 //     strain      d eps_k = ratio d lambda; ratio 0 holds the strain
 //     volume      d eps_k = minus the sum of the other axes, shared by all axes with this condition: undrained
-//     stress      sigma_k as when the stage began, or on its way to a target
-//     p           sigma_k such that p' is as when the stage began, or on its way to a target. Of two such axes both
+//     stress      sigma_k as when the stage began, or on the way to a target
+//     p           sigma_k such that p' is as when the stage began, or on the way to a target. Of two such axes both
 //                 move alike
 //     b           sigma_k such that b = (s2 - s3)/(s1 - s3) has its value, s2 the axis itself and s1, s3 the driven
 //                 axis and the remaining one, the larger stress being s1
 //
-// "On its way": targets of the stage are reached together along a straight line in stress space; a table
+// "On the way": targets of the stage are reached together along a straight line in stress space; a table
 // (path_table.hpp) has many such lines, of strains too. They are passed no faster than the rate control allows, or at
 // the times of the table.
 #pragma once
@@ -57,7 +57,7 @@ enum class DrivenComponent
   xy
 };
 
-/// Where a path ends: at whichever comes first. Stresses are passed from either side; one that is there when the stage
+/// Where a path ends: at whichever comes first. Stresses are passed from either side; one that is met when the stage
 /// begins, within 0.1 % of p', ends it at once.
 struct PathEnd
 {
@@ -160,7 +160,7 @@ private:
   struct Read
   {
     mutable std::shared_ptr<const PathTable> table;
-    mutable std::uint64_t hash = 0; ///< of the table, looked at in every step
+    mutable std::uint64_t hash = 0; ///< of the table, checked in every step
     Read() = default;
     Read(const Read &) {} // a copy may be given other targets
     Read &operator=(const Read &other)

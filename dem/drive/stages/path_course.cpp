@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a path prescribes on its way, from its keys or its table, and which settings make no path.
+// What a path prescribes along its course, from its keys or its table, and which settings make no path.
 #include "base/error.hpp"
 #include "dem/drive/stages/path.hpp"
 
@@ -52,7 +52,7 @@ std::string Path::contradiction() const
       const char *name = component_names[k];
       const bool of_axes = keep == PathCondition::volume || keep == PathCondition::p || keep == PathCondition::b;
       if (is_driven(k) && components[k] != PathComponent{})
-        return fmt::format("{} is driven, so it takes no condition of its own; leave the table {} out", name, name);
+        return fmt::format("{} is driven, so it takes no condition; leave out the table {}", name, name);
       if (k == 3 && of_axes)
         return "xy.keep must be \"strain\" or \"stress\": p', b and volume are of the axes";
       if (ratio != 0 && keep != PathCondition::strain)

@@ -72,7 +72,7 @@ void fail_if_hopeless(const Path &path, const StageContext &c, const Observation
   const bool ends_for_sure = path.end.strain > 0 || cycles_end || path.max_steps > 0;
   if (ends_for_sure || std::abs(c.state.loading.strain) < hopeless_strain)
     return;
-  throw RunFailure(fmt::format("step {}: stage {} (path) has gone {:.4g} % of strain and has not come to its end: {}. "
+  throw RunFailure(fmt::format("step {}: stage {} (path) has gone {:.4g} % of strain without reaching its end: {}. "
                                "Give until.strain or max_steps, or values that the specimen can reach.",
                                seen.step, c.state.place.stage, 100 * std::abs(c.state.loading.strain),
                                to_text(path.conditions(path.figures(c, seen)))));
@@ -85,7 +85,7 @@ std::optional<EndCondition> Path::ends(const StageContext &c, const Observation 
   if (progress.table != table_hash())
     throw InputError(
         fmt::format("stage {} (path): the table {} is not the one that the stage began with. Put that one back, "
-                    "or start anew with --overwrite.",
+                    "or start again with --overwrite.",
                     c.state.place.stage, file));
   const StressInvariants start = invariants(Vec3(-progress.stress));
   const double near = start_tolerance * start.p;

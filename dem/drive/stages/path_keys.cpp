@@ -87,10 +87,10 @@ constexpr Key turn_keys[] = {
 
 constexpr Key end_keys[] = {
   {.table = true, .presence = Presence::optional, .value = "{ strain = 0.05 }",
-   .text = "When the stage ends: at whichever of its conditions comes first. A stage that drives nothing ends by itself, "
+   .text = "The stage ends at whichever of its conditions comes first. A stage that drives nothing ends by itself, "
            "where its path does. One that turns needs `until.cycles` or `max_steps`; without `until.strain` and "
-           "`max_steps` all but turns at a strain fail at 100 % of strain. A stress that is within 0.1 % of p' of its "
-           "value when the stage begins ends the stage at once, with a warning."},
+           "`max_steps` all but turns at a strain fail at 100 % of strain. A stress that is within 0.1 % of p' of "
+           "its value when the stage begins ends the stage at once, with a warning."},
   {.path = "strain", .field = member<&PathEnd::strain>, .presence = Presence::optional, .value = "0.05",
    .range = ranges::to_ten, .reason = no_percent, .text = "Driven strain of the stage, its amount."},
   {.path = "volumetric_strain", .field = member<&PathEnd::volumetric_strain>, .presence = Presence::optional,
@@ -104,7 +104,7 @@ constexpr Key end_keys[] = {
    .range = {-3, 3}, .reason = "because q/p' lies there without tension",
    .text = "When q/p' passes this, from either side."},
   {.path = "cycles", .field = member<&PathEnd::cycles>, .presence = Presence::optional, .value = "10",
-   .range = {1, 1e9}, .text = "After so many cycles of this stage."},
+   .range = {1, 1e9}, .text = "After this many cycles of this stage."},
 };
 // clang-format on
 

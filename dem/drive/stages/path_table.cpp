@@ -53,8 +53,8 @@ std::vector<Heading> read_headings(const std::filesystem::path &file, const std:
       if (!heading.quantity || heading.factor == 0)
         reject(file, 1,
                fmt::format(
-                   "\"{}\" is no column of a path; give any of {} with their units, stresses in (Pa), (kPa) or (MPa), "
-                   "strains in (-) or (%)",
+                   "\"{}\" is not a column of a path; give any of {} with their units, stresses in (Pa), (kPa) or (MPa)"
+                   ", strains in (-) or (%)",
                    header[c], fmt::join(names, ", ")));
       bool &here = seen[static_cast<std::size_t>(*heading.quantity)];
       if (here)

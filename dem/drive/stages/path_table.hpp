@@ -30,7 +30,7 @@ constexpr bool is_strain(PathQuantity quantity) { return quantity >= PathQuantit
 constexpr bool is_compression(PathQuantity quantity) { return !is_strain(quantity) && quantity != PathQuantity::tau; }
 const char *name_of(PathQuantity quantity); ///< "stress_x", "mean_stress", "gamma": a column without its unit
 
-/// A path through stress and strain: straight lines between knots. Knot 0 is where the specimen stands when the stage
+/// A path through stress and strain: straight lines between knots. Knot 0 is where the specimen is when the stage
 /// begins, at 0; the knots here follow it.
 struct PathTable
 {
@@ -42,7 +42,7 @@ struct PathTable
   bool prescribes(PathQuantity q) const { return !columns[static_cast<std::size_t>(q)].empty(); }
   /// Value at a place, between knot 0 with the value `start` and the last one; beyond it that of the last.
   double value(PathQuantity q, double place, double start) const;
-  /// Of all knots and values: a resumed run must go on along the same path.
+  /// Of all knots and values: a resumed run must continue along the same path.
   std::uint64_t hash() const;
 
   bool operator==(const PathTable &) const = default;

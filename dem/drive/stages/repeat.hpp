@@ -9,7 +9,7 @@ namespace isostat
 class Repeat : public StageBehaviour
 {
 public:
-  std::uint64_t stages = 1; ///< so many entries of the programme before this one
+  std::uint64_t stages = 1; ///< this many entries of the programme before this one
   std::uint64_t times = 2;  ///< in all, the first time included
 
   bool operator==(const Repeat &) const = default;

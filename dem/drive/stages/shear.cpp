@@ -20,11 +20,11 @@ namespace
 constexpr std::uint64_t indicator_interval = 50;
 constexpr double consolidation_tolerance = 0.01;      ///< of p', on the stresses that a stage begins with
 constexpr double approach = 0.9, least_share = 0.002; ///< of the way to a turn, and of an increment
-constexpr double share_where_kept = 0.2; ///< of an increment: stresses that are to be kept are off after a larger one
-constexpr double largest_fall = 0.01;    ///< of p' in an increment, of p0'
-constexpr double modulus_over_affine = 0.5; ///< after a reversal grains give way: 0.55 to 0.7 was seen
+constexpr double share_where_kept = 0.2;              ///< of an increment: stresses to keep are off after a larger one
+constexpr double largest_fall = 0.01;                 ///< of p' in an increment, of p0'
+constexpr double modulus_over_affine = 0.5;           ///< after a reversal grains give way: 0.55 to 0.7 was seen
 
-/// Driven strain in which p' falls by the largest fall, if it goes on as in the last increment [-].
+/// Driven strain in which p' falls by the largest fall, if it continues as in the last increment [-].
 double strain_of_fall(DriveState &state, const Vec3 &stress)
 {
   LastIncrement &last = state.increment;

@@ -20,7 +20,7 @@ extern const ShearMode lateral_mode;      ///< -q against the strain of another 
 extern const ShearMode triaxial_mode;     ///< q against axial (y) strain; laterally half of it in extension
 extern const ShearMode simple_shear_mode; ///< tau = sigma_xy against gamma_xy; nothing else moves
 
-/// Loads between which a specimen must stand when a stage begins.
+/// Loads between which a specimen must be when a stage begins.
 struct LoadRange
 {
   double low, high; ///< Pa; of infinite amount: any
@@ -45,7 +45,7 @@ public:
   bool needs_cell() const override { return mode().needs_cell; }
   bool shears() const override { return true; }
   void begin(const StageContext &c) const override;
-  /// @throws InputError  the specimen stands outside of required_loads()
+  /// @throws InputError  the specimen is outside of required_loads()
   void begin_shear(const StageContext &c, const Mat3 &stress) const override;
   double load(const Observation &seen) const override { return seen.*mode().load; }
   double strain(const Observation &seen) const override { return seen.*mode().strain; }
@@ -101,7 +101,7 @@ public:
   KeptStresses kept_stresses(const StageContext &c) const final;
 
 protected:
-  /// Along x, y, z; that along y is not looked at. Pa, compression positive.
+  /// Along x, y, z; that along y is not used. Pa, compression positive.
   virtual Vec3 lateral_stresses(const StageContext &c) const = 0;
   virtual double lateral_per_axial() const { return 0; } ///< by how much they change with sigma_y [-]
 

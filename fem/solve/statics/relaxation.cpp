@@ -2,8 +2,8 @@
 // One sub-step of statics by relaxation: docs/theory_column.md (18a). A body without inertia of its own is given one
 // whose mass matrix is an elastic stiffness M, and falls to rest under its residual. With M no softer than the soil all
 // modes have frequencies of at most 1, so one step suits all, in any mesh; soft modes speed up until their power
-// changes its sign, and start anew from rest. (M may be too soft by a third, 4/3 being the limit of the scheme. Where
-// it is softer yet, steps no longer get smaller: it is doubled then, and the sub-step begun anew.)
+// changes its sign, and start again from rest. (M may be too soft by a third, 4/3 being the limit of the scheme. Where
+// it is softer yet, steps no longer get smaller: it is doubled then, and the sub-step begun again.)
 //
 //     s_k = M^-1 r(y_k)         x_k+1 = y_k + s_k          y_k+1 = x_k+1 + (t_k - 1)/t_k+1 (x_k+1 - x_k)
 //     t_k+1 = [1 + sqrt(1 + 4 t_k^2)]/2;  t = 1 and y = x where r(y_k).(x_k+1 - x_k) <= 0

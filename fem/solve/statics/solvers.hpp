@@ -10,7 +10,7 @@ namespace isostat
 /// sub-step is.   tested: tests/fem/solve/statics_test.cpp, statics_failure_test.cpp
 bool solve_by_newton(StaticsSubstep &substep, const Material &material, const NewtonSettings &settings);
 
-/// Relaxation (18a) of a sub-step from its start, for where the way to equilibrium leads over larger residuals.
+/// Relaxation (18a) of a sub-step from its start, for where the way to equilibrium passes through larger residuals.
 /// tested: tests/fem/solve/statics_relaxation_test.cpp
 bool solve_by_relaxation(StaticsSubstep &substep, const Material &material, unsigned max_iterations);
 } // namespace isostat

@@ -5,7 +5,7 @@
 
 namespace isostat
 {
-/// What statics goes on from: the last sub-step with equilibrium, and what all residuals are measured by.
+/// What statics continues from: the last sub-step with equilibrium, and what all residuals are measured by.
 /// tested: tests/fem/solve/statics_state_test.cpp
 struct StaticsState
 {

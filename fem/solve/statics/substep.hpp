@@ -24,7 +24,7 @@ struct StaticsProblem
   std::unique_ptr<StaticsSystem> system;
 };
 
-/// A sub-step on its way to equilibrium: an increment from a state to the loads at its end, and the residual of (14)
+/// A sub-step that approaches equilibrium: an increment from a state to the loads at its end, and the residual of (14)
 /// and (15) there. Says what is missing and what would make up for it; solve_by_newton() and
 /// solve_by_relaxation() decide how far to go.
 /// tested: tests/fem/solve/statics_test.cpp, tests/verification/consolidation_test.cpp

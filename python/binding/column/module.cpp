@@ -143,12 +143,12 @@ PYBIND11_MODULE(_column, module)
       .def_readonly("title", &ColumnScene::title, "What heads tables and figures.")
       .def_property_readonly(
           "folder", [](const ColumnScene &scene) { return scene.output.folder; },
-          "Where run() leaves results unless it is told: results/<name of the scene file>.")
+          "Where run() leaves results unless a folder is given: results/<name of the scene file>.")
       .def_property_readonly(
           "text", [](const ColumnScene &scene) { return to_toml(scene); },
           "The whole scene as TOML: every key with its value and unit.")
       .def("check_inputs", &check_inputs,
-           "Reads libraries and records. Raises InputError where they do not have what the scene takes from them.")
+           "Reads libraries and records. Raises InputError where they lack what the scene needs.")
       .def(
           "__eq__", [](const ColumnScene &one, const ColumnScene &other) { return one == other; }, py::is_operator())
       .def("__hash__", [](const ColumnScene &scene) { return py::hash(py::str(to_toml(scene))); })

@@ -20,7 +20,7 @@ py::array_t<double> copied(const double *first, std::vector<py::ssize_t> shape)
   return array;
 }
 
-/// The arrays of a state are looked at from now on, not written.
+/// The arrays of a state are only read from now on.
 py::object frozen(py::object state)
 {
   if (py::isinstance<py::dict>(state))

@@ -58,7 +58,7 @@ def add_campaign(line: argparse.ArgumentParser, folder: str, figures: bool = Tru
 
 
 def add_engine(line: argparse.ArgumentParser, jobs: int = 1) -> None:
-    """Where runs are done, and what is said meanwhile."""
+    """Where runs are done, and the messages meanwhile."""
     line.add_argument("-j", "--jobs", type=count(0, 1024), default=jobs,
                       help=f"runs side by side on this machine, each on one thread (default {jobs}; 0: one for each core). "
                            "Results do not depend on it")
@@ -88,7 +88,7 @@ def run(program: Callable[[], None]) -> int:
         print(f"error: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print("interrupted; what has been run is kept, the same command goes on", file=sys.stderr)
+        print("interrupted; what has been run is kept, the same command continues", file=sys.stderr)
         return 130
     except (_core.RunFailure, OSError, MemoryError) as error:
         print(f"failed: {error}", file=sys.stderr)
@@ -132,7 +132,7 @@ def duration_text(seconds: float) -> str:
 
 
 def leave(folder: pathlib.Path, text: str, program: str, figures: bool) -> None:
-    """Prints the summary, keeps it as summary.txt, and leaves figures and report.html beside it."""
+    """Prints the summary, keeps it as summary.txt, and leaves figures and report.html next to it."""
     write_replacing(folder / "summary.txt", text)
     print(text, end="")
     if figures:

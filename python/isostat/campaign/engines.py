@@ -54,7 +54,7 @@ def engine(name: str | None = None, jobs: int = 1) -> Iterator[concurrent.future
     elif "://" in name or name.endswith(".json"):
         distributed = library("distributed", "python3-distributed")
         if name.endswith(".json") and not os.path.isfile(name):
-            raise _core.InputError(f"--engine {name}: is not there. Give the file of `dask scheduler --scheduler-file "
+            raise _core.InputError(f"--engine {name}: does not exist. Give the file of `dask scheduler --scheduler-file "
                                    f"{name}`.")
         where = {"scheduler_file": name} if name.endswith(".json") else {"address": name}
         try:

@@ -19,7 +19,7 @@ _locks: dict[pathlib.Path, typing.BinaryIO] = {}  # of this process, until it en
 
 
 def write_replacing(path: pathlib.Path, text: str) -> None:
-    """Writes a file aside, brings it to the disk and renames it, as the programs do: whoever reads it finds all of it. A
+    """Writes a file aside, brings it to the disk and renames it, as the programs do: a reader finds all of it. A
     path in the text that is not UTF-8 is spelt out.   Raises RunFailure"""
     _core._write_replacing(path, text.encode("utf-8", "backslashreplace"))
 
@@ -40,7 +40,7 @@ def refuse_other(path: pathlib.Path, text: str, owner: str) -> None:
     if kept != text:
         raise _core.InputError(f"{path}: belongs to another {owner}: it has `{first_difference(kept, text)}` where this "
                                f"one has `{first_difference(text, kept)}`. Choose another --output, or --overwrite to "
-                               "start anew.")
+                               "start again.")
 
 
 class CampaignFolder:
@@ -81,7 +81,7 @@ class CampaignFolder:
             raise _core.InputError(f"{self.path}: is a file, not a folder. Choose another --output.")
         if not self.path.is_dir() or all(is_first(entry.name) for entry in self.path.iterdir()):
             return
-        for name in ("scene.toml", "provenance.txt"):  # a folder of one's own may hold a scene
+        for name in ("scene.toml", "provenance.txt"):  # a user's folder may hold a scene
             if not (self.path / name).is_file():
                 raise _core.InputError(f"{self.path}: not overwritten, because it holds no {name} and may not be a "
                                        "results folder. Choose another --output.")
@@ -100,7 +100,7 @@ class CampaignFolder:
                                    "Give a path you may write to with --output.") from error
         if not wait_for_lock(lock, PATIENCE):
             lock.close()
-            raise _core.InputError(f"{self.path}: another program is at work in it. Wait for it, or give another "
+            raise _core.InputError(f"{self.path}: another program is using it. Wait for it, or give another "
                                    "--output.")
         _locks[place] = lock
 
@@ -108,7 +108,7 @@ class CampaignFolder:
         for lock in self.path.glob("*/**/.lock"):
             wait_until_free(lock.parent, RUNS_END)  # of a run whose campaign was killed
         names = [entry.name for entry in self.path.iterdir() if entry.name not in FIRST_FILES]
-        for name in [*names, "scene.toml", "provenance.txt"]:  # last what tells that these are results
+        for name in [*names, "scene.toml", "provenance.txt"]:  # last what marks these as results
             path = self.path / name
             try:
                 with contextlib.suppress(FileNotFoundError):

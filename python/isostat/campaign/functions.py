@@ -39,7 +39,7 @@ class FunctionRun(Run):
     def result(self) -> dict[str, Any]:
         return json.loads((self.results / "result.json").read_text(encoding="utf-8"))
 
-    is_of_this_scene = False  # it begins anew
+    is_of_this_scene = False  # it begins again
 
     @property
     def is_finished(self) -> bool:

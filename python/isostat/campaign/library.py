@@ -100,7 +100,7 @@ def requests_of(scene: Scene, options: argparse.Namespace) -> list[Request]:
 def check_output(path: pathlib.Path, options: argparse.Namespace) -> None:
     """Raises InputError where no library may be written."""
     if path.suffix != ".h5":
-        raise _core.InputError(f"--output {path}: must end in .h5, because scenes tell a library by it. Give for example "
+        raise _core.InputError(f"--output {path}: must end in .h5, because scenes recognise a library by it. Give for example "
                                "--output results/library.h5.")
     if path.is_dir():
         raise _core.InputError(f"{path}: is a folder, not a file. Choose another --output.")
@@ -138,7 +138,7 @@ def prepare(requests: list[Request], folder: pathlib.Path, cache: pathlib.Path, 
 
 
 def from_cache(requests: list[Request], cache: pathlib.Path) -> list[_core.Specimen]:
-    """Says what the specimens are warned of, each text once."""
+    """Prints the warnings of the specimens, each text once."""
     specimens, reported = [], set()
     for request in requests:
         warnings: list[str] = []
@@ -208,8 +208,8 @@ def parse(words: list[str]) -> argparse.Namespace:
     line.add_argument("-o", "--output", type=pathlib.Path, help="library (default: results/<scene name>.h5)")
     line.add_argument("--list", action="store_true", help="print what is in the library, and stop")
     use = line.add_mutually_exclusive_group()
-    use.add_argument("--append", action="store_true", help="add what a library that is there lacks")
-    use.add_argument("--overwrite", action="store_true", help="replace a library that is there")
+    use.add_argument("--append", action="store_true", help="add what an existing library lacks")
+    use.add_argument("--overwrite", action="store_true", help="replace an existing library")
     return line.parse_args(words)
 
 

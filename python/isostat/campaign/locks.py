@@ -16,13 +16,13 @@ def try_lock(file: BinaryIO) -> bool:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
-    except OSError:  # no locks there: nobody is told
+    except OSError:  # no locks there: no message
         pass
     return True
 
 
 def wait_for_lock(file: BinaryIO, patience: float, given_up: Callable[[], bool] = lambda: False) -> bool:
-    """Whether the lock came within so many seconds; `given_up` ends the wait, too."""
+    """Whether the lock came within this many seconds; `given_up` ends the wait, too."""
     end = time.monotonic() + patience
     while not try_lock(file):
         if given_up() or time.monotonic() > end:
@@ -32,7 +32,7 @@ def wait_for_lock(file: BinaryIO, patience: float, given_up: Callable[[], bool] 
 
 
 def wait_until_free(folder: pathlib.Path, patience: float) -> bool:
-    """Whether no program of Isostat works in a results folder, at last after so many seconds."""
+    """Whether no program of Isostat works in a results folder, at last after this many seconds."""
     try:
         with open(folder / ".lock", "rb+") as file:
             return wait_for_lock(file, patience)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of the programs, each in a process of its own and kept in a folder of its own.
+"""Runs of the programs, each in its own process and kept in its own folder.
 
 tested: tests/python/campaign_test.py, tests/apps/campaign_engines_test.py
 """
@@ -24,7 +24,7 @@ from isostat import _core
 from isostat.calls import STOPPING
 from isostat.campaign.locks import wait_for_lock, wait_until_free
 
-LAUNCHED = ("OMPI_", "PMIX_", "PMI_", "SLURM_")  # what a launcher tells its ranks: programs that these start are none
+LAUNCHED = ("OMPI_", "PMIX_", "PMI_", "SLURM_")  # what a launcher passes to its ranks: programs that these start are none
 PATIENCE = 60  # s, for a process that another call left in a folder: it stops with a checkpoint when its parent ends
 BAD_INPUT, STOPPED = 2, 130  # exit codes
 CRASHED = 126  # exit codes from here on: stopped, killed or crashed
@@ -126,7 +126,7 @@ def read_summary(results: pathlib.Path) -> dict[str, Any]:
 def execute(run: Run) -> tuple[int, float]:
     """Does a run, or the rest of it where there is a checkpoint, in this process' place: what an engine is given.
 
-    Waits for whoever does it already; what that one has finished is not done again. The program ends with a checkpoint
+    Waits for the process that already does it; what that one has finished is not done again. The program ends with a checkpoint
     when the thread that called this ends.
     Returns its exit code, or 128 + the signal that ended it, and the seconds it took.
     """
@@ -139,7 +139,7 @@ def execute(run: Run) -> tuple[int, float]:
         if run.is_finished:
             return 0, 0
         if not wait_until_free(run.results, PATIENCE):
-            return refuse(run, "another program is at work in it. Wait for it."), 0
+            return refuse(run, "another program is using it. Wait for it."), 0
         if has_other_files(run.results):
             return refuse(run, "is not emptied, because it holds no results. Move it away."), 0
         resumed = run.is_of_this_scene and any((run.results / "checkpoint").glob("*.h5"))
@@ -150,7 +150,7 @@ def execute(run: Run) -> tuple[int, float]:
 
 
 def has_other_files(folder: pathlib.Path) -> bool:
-    """Whether a folder may be somebody's own. A run that was killed as it began leaves files aside."""
+    """Whether a folder may be a user's own. A run that was killed as it began leaves files aside."""
     names = [entry.name for entry in folder.iterdir() if not entry.name.endswith(".tmp")] if folder.is_dir() else []
     return bool(names) and not set(OWN_FILES) & set(names)
 
@@ -162,11 +162,11 @@ def refuse(run: Run, why: str) -> int:
 
 
 def start_program(run: Run, resumed: bool) -> int:
-    """Its exit code; what the folder holds is removed unless the program goes on with it."""
+    """Its exit code; what the folder holds is removed unless the program continues with it."""
     if not resumed:
         shutil.rmtree(run.results, ignore_errors=True)
         run.log.with_suffix(".cpu").unlink(missing_ok=True)
-    run.log.unlink(missing_ok=True)  # it may be a link to a file of somebody
+    run.log.unlink(missing_ok=True)  # it may be a link to a user's file
     command = ["setpriv", "--pdeathsig", "TERM", "--", *run.command(resumed)]
     environment = {name: value for name, value in os.environ.items()
                    if not name.startswith(LAUNCHED) or name.startswith("OMPI_ALLOW_RUN_AS_ROOT")}
@@ -228,10 +228,10 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
     """Does all runs, side by side. When it is interrupted it starts no others, and lets those of this machine end with a
     checkpoint.
 
-    ended     told of each run that has ended: its exit code and the seconds it took
-    waiting   told of those at work, whenever nothing has ended for `interval` seconds
+    ended     called for each run that has ended: its exit code and the seconds it took
+    waiting   called with the running ones, whenever nothing has ended for `interval` seconds
 
-    Raises RunFailure, at the end, if runs were stopped by somebody else, and at once if the disk is full or the engine has
+    Raises RunFailure, at the end, if runs were stopped by another process, and at once if the disk is full or the engine has
     lost one; KeyboardInterrupt.
     """
     _stopping.clear()
@@ -249,7 +249,7 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
                 stopped.append(futures[future])
             elif code and any(text in futures[future].reason for text in NO_ROOM):  # says nothing of the scene
                 raise _core.RunFailure(f"{futures[future].name}: {futures[future].reason}. Make room; the same command "
-                                       "goes on.")
+                                       "continues.")
             ended(futures[future], code, seconds)
         return bool(done)
 
@@ -273,13 +273,13 @@ def complete(executor: concurrent.futures.Executor, runs: Iterable[Run],
         except BaseException:
             pending = {future for future in pending if not future.cancel()}
             stop()
-            end = time.monotonic() + PATIENCE  # runs of other machines go on, and are found finished by the next call
+            end = time.monotonic() + PATIENCE  # runs of other machines continue, and are found finished by the next call
             while pending and time.monotonic() < end:
                 tell_of_ended()
             raise
     if stopped:
-        raise _core.RunFailure(f"{len(stopped)} runs were stopped by somebody else, the first of them {stopped[0].name}; "
-                               "the same command goes on")
+        raise _core.RunFailure(f"{len(stopped)} runs were stopped by another process, the first of them {stopped[0].name}; "
+                               "the same command continues")
 
 
 def result_of(future: concurrent.futures.Future[tuple[int, float]], run: Run) -> tuple[int, float]:
@@ -289,4 +289,4 @@ def result_of(future: concurrent.futures.Future[tuple[int, float]], run: Run) ->
         raise
     except BaseException as error:  # of the engine: every library has its own
         raise _core.RunFailure(f"{run.name}: the engine has lost it ({type(error).__name__}). What has ended is kept, the "
-                               "same command goes on.") from error
+                               "same command continues.") from error

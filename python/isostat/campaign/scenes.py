@@ -12,13 +12,13 @@ def in_si(text: str) -> float:
     """Of a quantity or number as scenes write it: "10 mm", "0.3"; degrees of an angle."""
     number, _, unit = text.partition(" ")
     digits, _, exponent = number.partition("e")
-    if unit == "tan":  # of an angle that no number of degrees gives to the bit
+    if unit == "tan":  # of an angle that no number of degrees gives bit for bit
         return math.degrees(math.atan(float(number)))
     return float(f"{digits}e{int(exponent or 0) + POWERS.get(unit, 0)}")
 
 
 def below_campaign(sections: dict[str, Any]) -> None:
-    """Makes a scene one of a run in FOLDER/runs/NAME: without files that nobody looks at, with a relative cache beside
+    """Makes a scene one of a run in FOLDER/runs/NAME: without files that are not read, with a relative cache next to
     FOLDER, where that of any run is."""
     sections["output"] |= OF_A_RUN
     cache = pathlib.Path(sections["specimen"]["cache"])

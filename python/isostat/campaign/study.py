@@ -5,11 +5,11 @@ A study is a package of the folder studies, with
 
     runs(options) -> list        what is run: objects with name, kind, estimated_seconds(), scene(), and program if it is not
                                  element_test. Those of kind "prepare" come first and make what others of the same
-                                 `specimen` need. In place of scene(): function, called in a process of its own with the
+                                 `specimen` need. In place of scene(): function, called in a separate process with the
                                  folder of results and arguments(), a dictionary; it returns one, too
     prepare(options, executor)   makes what several runs share, before runs(); scene() is None where it is still missing
     report(store, runs, folder)  leaves tables and figures of what has been run
-    add_options(line)            options of its own, if it has any
+    add_options(line)            its options, if it has any
     DEFAULTS, QUICK              of its options, and what `--quick` sets instead, with which long runs are left out
     PAGE                         the folder of docs/results that gets tables and figures, if its name is another
 

@@ -232,7 +232,7 @@ def write_packing(path: str | os.PathLike[str], specimen: _core.Specimen, *, for
     """Writes a packing by the ending of the file: .h5 .dump .data .txt .csv .vtp.
 
     format: "specimen", "lammps-dump", "lammps-data", "yade", "csv" or "vtp", where the ending is another. What the format
-    cannot hold is a warning. A file that is there is replaced only with `overwrite`.
+    cannot hold is a warning. An existing file is replaced only with `overwrite`.
     """
     path = path_text("path", path)
     given("specimen", specimen, _core.Specimen, "an isostat.Specimen")

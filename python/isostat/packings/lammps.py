@@ -243,7 +243,7 @@ class InBox:
 
 
 def dump_text(packing):
-    """One frame. Comes back to the bit; the edges of a cell that leans to round-off, because a dump holds its bounds."""
+    """One frame. Comes back bit for bit; the edges of a cell that leans to round-off, because a dump holds its bounds."""
     s = InBox(packing)
     leans = any(s.tilt)
     rows = np.column_stack([(s.box + reach(*s.tilt)).T, s.tilt] if leans else [s.box.T]).tolist()
@@ -255,7 +255,7 @@ def dump_text(packing):
 
 
 def data_text(packing):
-    """For read_data of LAMMPS; comes back to the bit."""
+    """For read_data of LAMMPS; comes back bit for bit."""
     s = InBox(packing)
     density = np.full(len(s.ids), packing.density)
     return (f"LAMMPS data file of Isostat, atom_style sphere, units si, {'periodic cell' if s.periodic else 'rigid box'}\n\n"

@@ -67,7 +67,7 @@ class Spheres:
                    ("" if self.lines is not None else f"sphere {i}: ") + what(i))
 
     def check(self):
-        """Refuses what no spheres are, and ids that are there twice."""
+        """Refuses what no spheres are, and repeated ids."""
         r = self.radii
         if not len(r):
             refuse(self.path, 0, "no spheres; expected lines x y z r (m)")

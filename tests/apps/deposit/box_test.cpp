@@ -80,7 +80,7 @@ TEST(BoxScene, RefusesPlatesThatAreNone)
   expect_refused(with_plate(), {"analysis.displacement", "within +-", "taken as small"}, {"analysis.displacement=9 m"});
   expect_refused(with_plate("", "from = \"0.3 m\"\nto = \"1.3 m\"\n"), {"analysis.to", "boundaries between elements"});
   expect_refused(with_plate(), {"water.drainage", "\"dry\""}, {"water.drainage=coupled", "layer.0.permeability=1 m/s"});
-  expect_refused(with_plate(), {"mesh.sides", "\"walls\" beside a plate"}, {"mesh.sides=tied"});
+  expect_refused(with_plate(), {"mesh.sides", "\"walls\" with a plate"}, {"mesh.sides=tied"});
   expect_refused(with_plate(), {"load.kind", "\"none\""}, {"load.kind=step", "load.amplitude=1 kPa"});
   expect_refused(with_plate("", "max_iterations = 0\n"), {"analysis.max_iterations", "relaxation_iterations"});
   expect_refused(box(), {"analysis.on", "only to plate"}, {"analysis.on=base"});

@@ -86,7 +86,7 @@ TEST_F(LayerTables, OverridesCountTheLayersOfTheFile)
 
 TEST_F(LayerTables, MistakesInTheScene)
 {
-  expect_refused(profile, {"column.toml:2: layer.0.table = profile.csv; is not there"});
+  expect_refused(profile, {"column.toml:2: layer.0.table = profile.csv; does not exist"});
   write("profile.csv", header + "1800,1,2,150\n");
   expect_refused(above + profile + "density = \"2000 kg/m3\"\n",
                  {"column.toml:11: layer.1.density", "excludes table", "column.toml:7", "Keep one"});

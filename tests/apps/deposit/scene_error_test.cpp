@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a column's scene file or an override can have wrong, and what the user is told.
+// What a column's scene file or an override can have wrong, and the message for the user.
 #include "apps/deposit/scene.hpp"
 #include "base/error.hpp"
 #include "base/scene/schema.hpp"
@@ -122,7 +122,7 @@ TEST(ColumnSceneError, MeshAndWater)
   expect_refused(smallest, {"water.lagged_compressibility", "has no effect"}, {"water.lagged_compressibility=true"});
   EXPECT_EQ(complaint(layer + undrained + dynamic, {"water.lagged_compressibility=true"}), "accepted");
   expect_refused(smallest, {"must be \"dry\", \"undrained\" or \"coupled\""}, {"water.drainage=wet"});
-  expect_refused(smallest + "[water2]\n", {"column.toml:10: water2; is no key of a scene. Did you mean water?"});
+  expect_refused(smallest + "[water2]\n", {"column.toml:10: water2; is an unknown key. Did you mean water?"});
 }
 
 TEST(ColumnSceneError, Base)
@@ -144,8 +144,7 @@ TEST(ColumnSceneError, Motions)
 {
   const std::string ricker = "[[motion]]\nkind = \"ricker\"\namplitude = \"0.1 g\"\nfrequency = \"2 Hz\"\n";
   EXPECT_EQ(complaint(smallest + ricker), "accepted");
-  expect_refused(smallest + ricker + ricker,
-                 {"column.toml:14: motion.1.axis; has its motion already (column.toml:10)"});
+  expect_refused(smallest + ricker + ricker, {"column.toml:14: motion.1.axis; already has a motion (column.toml:10)"});
   EXPECT_EQ(complaint(smallest + ricker + ricker + "axis = \"y\"\n"), "accepted");
   expect_refused(smallest + ricker + "file = \"a.txt\"\n", {"column.toml:14:", "only to record."});
   expect_refused(smallest + ricker, {"motion.0.frequency = 0 Hz; must be in [0.001 Hz, 1000 Hz]"},
@@ -211,7 +210,7 @@ TEST(ColumnSceneError, MotionFiles)
   std::ofstream(scene) << smallest + "[[motion]]\nkind = \"record\"\nfile = \"motions/a.txt\"\n";
   test::expect_parts(
       test::refusal([&] { read_column_scene(scene); }),
-      {scene + ":12: motion.0.file = motions/a.txt; is not there: neither ", (folder / "motions/a.txt").string()});
+      {scene + ":12: motion.0.file = motions/a.txt; does not exist: neither ", (folder / "motions/a.txt").string()});
   std::ofstream(scene) << smallest + "[[motion]]\nkind = \"record\"\nfile = \"motions\"\n";
   test::expect_parts(test::refusal([&] { read_column_scene(scene); }), {"motion.0.file = motions; is a folder: "});
   std::ofstream(scene) << smallest + "[[motion]]\nkind = \"record\"\nfile = \"motions/a.txt\"\n";

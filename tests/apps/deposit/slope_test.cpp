@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sloping ground and water tables of a column's scene: what stands, and what is refused.
+// Sloping ground and water tables of a column's scene: which slopes are stable, and what is refused.
 #include "apps/deposit/slope.hpp"
 
 #include "tests/apps/deposit/scene_texts.hpp"
@@ -52,7 +52,7 @@ TEST(SlopeScene, FactorOfSafetyOfTheInfiniteSlope)
   const SlopeSafety safety = *slope_safety(deep); // 5 m of 2000 kg/m3, water in the lower 3 m: 1 - 3/5 1000/2000
   EXPECT_NEAR_BECAUSE(safety.factor, 0.7 * 0.6 / tangent, exact);
   EXPECT_EQ(safety.depth, 5);
-  // beside a deviator of k0 = 0.5, sqrt(0.6^2 (2/3)^2 - 0.25/3) of the normal stress is left
+  // in addition to a deviator of k0 = 0.5, sqrt(0.6^2 (2/3)^2 - 0.25/3) of the normal stress is left
   EXPECT_NEAR_BECAUSE(factor(sand + "strength_ratio = 0.6\n" + dry + slope("10") + dynamic),
                       std::sqrt(0.16 - 0.25 / 3) / tangent, exact);
   // Mohr-Coulomb at k0 = 1: its circle has the radius sin(phi) of the normal stress, and a cohesion adds c cos(phi)
@@ -72,19 +72,19 @@ TEST(SlopeScene, FactorOfSafetyOfTheInfiniteSlope)
 TEST(SlopeScene, WhatCannotStandIsRefused)
 {
   const std::string loose = sand + "k0 = 1.0\nstrength_ratio = 0.6\n";
-  expect_refused(loose + dry + slope("31") + dynamic,
-                 {"column.toml:7: layer.0.strength_ratio = 0.6; is too low for the slope to stand", "depth of 5 m",
-                  "slope.angle"});
+  expect_refused(
+      loose + dry + slope("31") + dynamic,
+      {"column.toml:7: layer.0.strength_ratio = 0.6; is too low for a stable slope", "depth of 5 m", "slope.angle"});
   EXPECT_NO_THROW(parse_column_scene(loose + dry + slope("30.9") + dynamic, "s")); // tan = 0.5985
   expect_refused(loose + undrained + slope("17") + dynamic, {"static shear stress is", "k0 = 1"});
   EXPECT_NO_THROW(parse_column_scene(loose + undrained + slope("16.6") + dynamic, "s")); // tan = 0.298
-  // beside a deviator of k0 = 0.5: tan = 0.2769
+  // in addition to a deviator of k0 = 0.5: tan = 0.2769
   expect_refused(sand + "strength_ratio = 0.6\n" + dry + slope("15.5") + dynamic, {"k0 = 0.5"});
   EXPECT_NO_THROW(parse_column_scene(sand + "strength_ratio = 0.6\n" + dry + slope("15.4") + dynamic, "s"));
   expect_refused("[[layer]]\nthickness = \"5 m\"\nmaterial = \"mohr_coulomb\"\nshear_velocity = \"200 "
                  "m/s\"\ncells = 5\nfriction_angle = \"30 deg\"\ncohesion = \"0 kPa\"\n" +
                      dry + slope("29") + dynamic,
-                 {"column.toml:6: layer.0.friction_angle = 30 deg; is too low for the slope to stand", "k0 = 0.5"});
+                 {"column.toml:6: layer.0.friction_angle = 30 deg; is too low for a stable slope", "k0 = 0.5"});
   expect_refused(loose + dry + slope("61") + dynamic,
                  {"slope.angle", "in [0 deg, 60 deg] because x points down", "no slope of soil is steeper"});
   expect_refused(loose + dry + slope("-1") + dynamic, {"slope.angle", "in [0 deg, 60 deg]"});

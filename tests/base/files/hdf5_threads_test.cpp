@@ -16,7 +16,7 @@ namespace
 class Hdf5Threads : public TemporaryFolder
 {
 protected:
-  /// Files of one thread: written, added to, read, and one that is not there.
+  /// Files of one thread: written, added to, read, and one that does not exist.
   void use_files(int thread, int rounds) const
   {
     const std::filesystem::path path = folder / fmt::format("thread{}.h5", thread);

@@ -16,7 +16,7 @@ namespace
 {
 constexpr double pi = std::numbers::pi;
 
-/// What a sine of unit amplitude becomes, and the size of what is left when the same sine is taken off.   @param
+/// What a sine of unit amplitude becomes, and the size of the rest when the same sine is subtracted.   @param
 /// frequency  per row
 std::pair<double, double> gain(std::size_t stride, double frequency)
 {
@@ -89,7 +89,7 @@ TEST(DecimationFilter, RestBeforeTheFirstSampleAndTheMeanOfWhatIsThereAfterTheLa
   for (int n = 0; n < 13; ++n)
     started.follow({&one, 1});
   const double w0 = 2 * started.at(0)[0] - 1; // half of the weights lie before the start
-  EXPECT_NEAR_BECAUSE(w0, 2 * 0.375 / 2, 0.01, "the weight in the middle of a sinc, but for its window");
+  EXPECT_NEAR_BECAUSE(w0, 2 * 0.375 / 2, 0.01, "the weight in the middle of a sinc, except for its window");
 }
 
 TEST(DecimationFilter, GoesOnFromItsSamplesToTheBit)

@@ -68,7 +68,7 @@ TEST(RveMaterial, ABatchIsAsManySingleElements)
     }
 }
 
-// So a column's shear xz is the simple shear xy of the element tests to the bit.
+// So a column's shear xz is the simple shear xy of the element tests bit for bit.
 TEST(RveMaterial, ShearOfTheColumnIsThatOfTheElementTests)
 {
   RveMaterial material({test::soft_specimen(4)}, {}, MPI_COMM_SELF);
@@ -139,7 +139,7 @@ TEST(RveMaterial, BytesGoOnToTheSameBits)
   material.rollback();
   EXPECT_EQ(run(material, 10, 30), run(other, 10, 30));
   EXPECT_EQ(material.pack(), other.pack());
-  other.wave_moduli(moduli_after); // kept, not found anew
+  other.wave_moduli(moduli_after); // kept, not found again
   EXPECT_EQ(moduli[1].p, moduli_after[1].p);
   EXPECT_EQ(other.cost().stiffnesses, 0u);
 }

@@ -79,7 +79,7 @@ TEST_F(InSitu, AShearBeyondTheStrengthIsNotReached)
   try
     {
       material.set_initial_stress(std::vector{Stress{-60e3, -60e3, -60e3, 0, 60e3, 0}});
-      FAIL() << "a slope of 45 deg stands";
+      FAIL() << "a slope of 45 deg is accepted";
     }
   catch (const RunFailure &failure)
     {

@@ -21,7 +21,7 @@ constexpr Tolerance tolerance{1e-13, "round-off of some hundred operations a con
 constexpr Tolerance small_overlap{1e-12, "what a barely touching contact loses is known to round-off of its overlap"};
 using Pair = ContactList::Pair;
 
-/// A random cloud whose grains stand in other images of the cell: no pair is where it seems to be.
+/// A random cloud whose grains are in other images of the cell: no pair is where it seems to be.
 struct CloudInCell
 {
   Cloud cloud;

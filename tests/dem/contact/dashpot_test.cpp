@@ -27,7 +27,7 @@ struct Collision
   double kinetic_before; // J
 };
 
-/// Two free grains of radii 1e-4 and 1e-4 * ratio run into each other at 0.1 m/s.
+/// Two single grains of radii 1e-4 and 1e-4 * ratio run into each other at 0.1 m/s.
 Collision collide(double beta, double friction, double ratio, double step_over_critical)
 {
   LinearRolling law = test::paper_law();

@@ -37,8 +37,8 @@ inline double spring_energy(const Vec3 &force, double stiffness)
   return stiffness > 0 ? 0.5 * force.squaredNorm() / stiffness : 0;
 }
 
-/// What a spring loses when its stiffness changes from k0 to k while the force of the step before, f0, is kept but for
-/// what a shrinking contact gives up.
+/// What a spring loses when its stiffness changes from k0 to k while the force of the step before, f0, is kept
+/// except for what a shrinking contact gives up.
 inline double loss_of_change(const Vec3 &f0, double k0, double k)
 {
   return f0.norm() > 0 ? spring_energy(f0, k0) - spring_energy(std::min(1.0, k / k0) * f0, k) : 0;
@@ -131,7 +131,7 @@ Outcome scalar_outcome(const Concrete &law, const Cloud &cloud, const See &see, 
   return out;
 }
 
-/// Pair p as it stands, without periodic images.
+/// Pair p as it is, without periodic images.
 inline ContactPair pair_in_box(const Cloud &cloud, std::size_t p)
 {
   const Packing &g = cloud.packing;

@@ -131,7 +131,7 @@ TEST(Virial, ChunksWithoutContactsAreZeroAndASetSumIsGivenBack)
   sum << 1, 0.1, 0.7, 0.1, 3, -1e-17, 0.7, -1e-17, -1e9;
   virial.set(sum);
   EXPECT_TRUE(same_bits(virial.sum(), sum));
-  virial.start(3, bound); // and starts anew
+  virial.start(3, bound); // and starts again
   EXPECT_TRUE(same_bits(virial.sum(), Mat3::Zero()));
 }
 } // namespace isostat

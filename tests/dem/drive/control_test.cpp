@@ -49,7 +49,7 @@ TEST_F(Control, LostForMoreThanTheShareIsToldOnceWithItsFigures)
     EXPECT_TRUE(check(0.5 * p0).empty()) << "5 % of the strain and no more";
   const std::vector<std::string> lost = check(120);
   ASSERT_EQ(lost.size(), 1u);
-  EXPECT_TRUE(check(0.9 * p0).empty()) << "told once";
+  EXPECT_TRUE(check(0.9 * p0).empty()) << "reported once";
   EXPECT_TRUE(close_control(spec, state).empty());
   ASSERT_EQ(state.control.losses.size(), 1u);
   const ControlLoss &loss = state.control.losses[0];

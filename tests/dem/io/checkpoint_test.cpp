@@ -55,7 +55,7 @@ TEST_F(CheckpointTest, KeepsTwoAndFallsBackWhenTheNewestIsDamaged)
   testing::internal::CaptureStderr();
   EXPECT_EQ(read_checkpoint(folder).specimen["mark"], 1e-3);
   const std::string warning = testing::internal::GetCapturedStderr();
-  for (const char *part : {"warning:", "last.h5: truncated", "goes on from the checkpoint before", "previous.h5"})
+  for (const char *part : {"warning:", "last.h5: truncated", "continues from the checkpoint before", "previous.h5"})
     EXPECT_NE(warning.find(part), std::string::npos) << warning;
 }
 
@@ -71,13 +71,13 @@ TEST_F(CheckpointTest, SaysWhatIsWrongWithEach)
   catch (const InputError &error)
     {
       EXPECT_NE(std::string(error.what()).find("last.h5"), std::string::npos) << error.what();
-      EXPECT_NE(std::string(error.what()).find("Or start anew with --overwrite"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("Or start again with --overwrite"), std::string::npos) << error.what();
     }
   std::filesystem::remove(folder / "last.h5");
   EXPECT_THROW(read_checkpoint(folder), InputError);
 }
 
-/// Numbers every field anew; what is optional is there.
+/// Numbers every field again; what is optional is there.
 struct Fill
 {
   int n = 0;

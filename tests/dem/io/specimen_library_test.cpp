@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A periodic specimen whose numbers tell it from others.
+/// A periodic specimen whose numbers distinguish it from others.
 Specimen realisation(double seed)
 {
   Specimen s{small_snapshot(), {{"consolidation", "k0"}, {"recipe", "# recipe\nof it"}}, {}};

@@ -175,7 +175,7 @@ TEST(Redundancy, NoContactsIsZeroNotNaN)
 
 TEST(Redundancy, RattlersLeaveTheMechanicalCoordinationNumber)
 {
-  Snapshot s = loose_grains(6); // a triangle, one grain hanging on it, two apart of which one touches a wall
+  Snapshot s = loose_grains(6); // a triangle, one grain touching it, two apart of which one touches a wall
   s.contacts = {contact(s, 0, 1), contact(s, 0, 2), contact(s, 1, 2), contact(s, 2, 3)};
   s.wall_contacts = {{4, 0, 1e-8, force}};
   const ContactNetwork network = contact_network(s);
@@ -185,7 +185,7 @@ TEST(Redundancy, RattlersLeaveTheMechanicalCoordinationNumber)
   EXPECT_DOUBLE_EQ(network.coordination_number(), 2.0);                // 8 / 4
   EXPECT_DOUBLE_EQ(network.mechanical_coordination_number(), 7.0 / 3); // (8 - 1) / (6 - 2 - 1)
 
-  s.contacts = {contact(s, 0, 1)}; // nobody has two contacts
+  s.contacts = {contact(s, 0, 1)}; // no grain has two contacts
   EXPECT_EQ(contact_network(s).mechanical_coordination_number(), 0);
 }
 } // namespace isostat

@@ -227,7 +227,7 @@ TEST(Stiffness, GrainsWithoutLoadChangeNothing)
   EXPECT_EQ((affine_stiffness(s) - bound).norm(), 0);
   s.contacts.push_back(closed(4, rattler, Vec3(1, 2, 3).normalized(), squeeze));
   EXPECT_EQ((condensed_stiffness(s) - c).norm(), 0);
-  const std::uint32_t last = add_grain(s, radius / 2); // a chain of two hanging on grain 4
+  const std::uint32_t last = add_grain(s, radius / 2); // a chain of two attached to grain 4
   s.contacts.push_back(closed(rattler, last, Vec3(1, -2, 1).normalized(), squeeze));
   EXPECT_EQ((condensed_stiffness(s) - c).norm(), 0);
   EXPECT_GT((affine_stiffness(s) - bound).norm(), 1e-3 * bound.norm());

@@ -30,7 +30,7 @@ TEST(UnbalancedForce, MeanResultantOverMeanContactForce)
 {
   Snapshot s = balanced_row();
   s.wall_contacts.pop_back(); // grain 2 is pushed by 2 N and held by nothing
-  // grains in contact: 0, 1, 2 with |resultant| 0, 0, 2; contacts: three of 2 N. The free grain 3 does not count.
+  // grains in contact: 0, 1, 2 with |resultant| 0, 0, 2; contacts: three of 2 N. The rattler 3 does not count.
   EXPECT_DOUBLE_EQ(unbalanced_force(s), (2.0 / 3) / 2.0);
 }
 

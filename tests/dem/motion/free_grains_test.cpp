@@ -139,7 +139,7 @@ TEST(FreeGrainsInABox, FollowTheWalls)
   EXPECT_CLOSE_BECAUSE(e.boundary_work, e.kinetic + e.free_grains, 1e-9, "round-off of sums over 2,000 steps");
 }
 
-// A packing that was sheared fast and is then held: without damping of its free grains it is never at rest.
+// A packing that was sheared fast and is then held: without damping of its rattlers it is never at rest.
 TEST(FreeGrainsInAPacking, ComeToRestWithIt)
 {
   for (const char *domain : {"rigid-box", "periodic-cell"})
@@ -166,7 +166,7 @@ TEST(FreeGrainsInAPacking, ComeToRestWithIt)
           unbalanced[damped] = a.unbalanced_force_ratio();
           EXPECT_LT(a.stress().trace() / 3, -100e3) << "it carries load";
         }
-      std::printf("%s held for 10,000 steps: unbalanced %.1e, with free grains damped %.1e\n", domain, unbalanced[0],
+      std::printf("%s held for 10,000 steps: unbalanced %.1e, with rattlers damped %.1e\n", domain, unbalanced[0],
                   unbalanced[1]);
       EXPECT_BELOW_BECAUSE(unbalanced[1], 1e-8, "local damping takes a factor e^-1 in some 500 steps");
       EXPECT_GT(unbalanced[0], 10 * unbalanced[1]);

@@ -233,7 +233,7 @@ public:
     contacts_.set_cell(cell_.edges);
   }
 
-  /// Everything that touches is listed with the right image, and pairs that went on touching have their history.
+  /// Everything that touches is listed with the right image, and pairs that kept touching have their history.
   void check()
   {
     std::map<Pair, std::size_t> place;
@@ -354,7 +354,7 @@ TEST(VerletListOfACell, ACellTooNarrowForItsGrainsIsRefused)
     VerletList list;
     list.update(packing, PeriodicCell::with_edges(lengths), 0, contacts);
   };
-  EXPECT_NO_THROW(update({0.91, 0.91, 0.91})); // each grain beside itself is no matter: they are of two sizes
+  EXPECT_NO_THROW(update({0.91, 0.91, 0.91})); // each grain next to itself does not matter: they are of two sizes
   EXPECT_THROW(update({3, 0.89, 3}), RunFailure);
   EXPECT_THROW(update({0.3, 3, 3}), RunFailure);
   // what counts is the distance to the next image, not the edges that were chosen for the lattice

@@ -80,7 +80,7 @@ public:
     list_.update(packing_, box_, maximum + (box_.upper - old.upper).cwiseAbs().maxCoeff(), contacts_);
   }
 
-  /// Everything that touches is listed, and pairs that went on touching have their history.
+  /// Everything that touches is listed, and pairs that kept touching have their history.
   void check()
   {
     std::map<Pair, std::size_t> place;

@@ -24,7 +24,7 @@ GradingSpec small_spec()
   return spec;
 }
 
-/// Smallest gap between two spheres, m; every pair is looked at.
+/// Smallest gap between two spheres, m; every pair is checked.
 double smallest_gap(const Packing &packing)
 {
   double gap = std::numeric_limits<double>::max();
@@ -177,7 +177,7 @@ TEST(Cloud, HasTheMedianDiameterThatIsAskedFor)
   for (const std::uint64_t grains : {50u, 500u, 3000u})
     {
       spec.grains = grains;
-      spec.cloud_edge = 1; // not looked at
+      spec.cloud_edge = 1; // not used
       const Cloud cloud = make_cloud(spec);
       EXPECT_NEAR_BECAUSE(cloud.packing.d50(), 0.45e-3, 1e-18, "round-off of a quotient and a product");
       EXPECT_NEAR_BECAUSE(cloud.packing.solid_volume() / cloud.box.volume(), spec.solid_fraction, 1e-13,

@@ -77,7 +77,7 @@ TEST(PackingCheck, WhatIsNoSoilIsRefused)
                 out.box.upper[0] = 0.85e-3;
                 check_packing(out, "p.txt", scale);
               }),
-              HasSubstr("grain 1 stands beyond a wall of the box by 50 %"));
+              HasSubstr("grain 1 reaches beyond a wall of the box by 50 %"));
 }
 
 TEST(PackingCheck, WhatIsOddIsAWarning)

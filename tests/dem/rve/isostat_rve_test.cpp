@@ -121,7 +121,7 @@ TEST_F(IsostatRve, MixedControlKeepsTheStressesThatAreNamed)
   drained.controlled(1, 2) = drained.controlled(2, 1) = true;
   const int controlled[6] = {1, 1, 1, 1, 0, 0};
   std::vector<double> target = stress(rve);
-  target[4] = not_a_number; // not looked at
+  target[4] = not_a_number; // not used
   ASSERT_EQ(isostat_rve_mixed(rve, shear, target.data(), controlled, 1e-3, nullptr), ISOSTAT_OK) << isostat_rve_error();
   ASSERT_EQ(direct.advance(drained).outcome, RveOutcome::accepted);
   test::expect_same_bits(state(rve), direct.save());
@@ -164,7 +164,7 @@ TEST_F(IsostatRve, RestoreGoesOnToTheSameBits)
   ASSERT_EQ(isostat_rve_restore(rve, start), ISOSTAT_OK);
   ASSERT_EQ(isostat_rve_undrained(rve, shear, nullptr), ISOSTAT_OK);
   test::expect_same_bits(state(rve), once);
-  isostat_rve_state *const first = start; // written over, not made anew
+  isostat_rve_state *const first = start; // written over, not made again
   ASSERT_EQ(isostat_rve_save(rve, &start), ISOSTAT_OK);
   EXPECT_EQ(start, first);
   isostat_rve *twin = create(); // one with the same grains

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Elements as bytes: the same bits go on, in this process and in another.
+// Elements as bytes: the same bits continue, in this process and in another.
 #include "base/error.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "tests/support/near.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene file or an override can have wrong, and what the user is told: place, value, allowed range, remedy.
+// What a scene file or an override can have wrong, and the message for the user: place, value, allowed range, remedy.
 #include "base/error.hpp"
 #include "dem/scene/scene.hpp"
 #include "tests/support/refusal.hpp"
@@ -40,9 +40,9 @@ TEST(SceneError, UnknownKeyNamesTheNearest)
   expect_complaint(smallest + "[motion]\ndampin = 0.2",
                    {"scene.toml:4: motion.dampin = 0.2;", "Did you mean motion.damping?"});
   expect_complaint(smallest + "[motion]\nzzz = 1",
-                   {"scene.toml:4: motion.zzz = 1; is no key of this kind", "--print-defaults"});
+                   {"scene.toml:4: motion.zzz = 1; is an unknown key", "--print-defaults"});
   expect_complaint("damping = 0.2\n" + smallest, {"scene.toml:1: damping", "Did you mean", "damping?"});
-  expect_complaint(smallest + "[motoin]\ndamping = 0.2", {"scene.toml:3: motoin; is no key", "Did you mean motion?"});
+  expect_complaint(smallest + "[motoin]\ndamping = 0.2", {"motoin; is an unknown key", "Did you mean motion?"});
   expect_complaint(cyclic_with("amplitude = \"60 kPa\""),
                    {"scene.toml:5: stage.0.amplitude", "Did you mean stage.deviator_amplitude?"});
   expect_complaint(cyclic_with("until = { cycle = 3 }"),
@@ -95,7 +95,7 @@ TEST(SceneError, Ranges)
     expect_complaint(smallest + fmt::format("[contact]\nfriction = \"18 deg\"\nrolling = {{ limit = {} }}", value),
                      {"accepted"});
   expect_complaint(smallest + "pressure = \"1e-40 kPa\"", {"in size (in SI units), because"});
-  expect_complaint(smallest + "pressure = \"1e-10 kPa\"", {"must be in [0.001 kPa, 1e9 kPa] because less cannot be"});
+  expect_complaint(smallest + "pressure = \"1e-10 kPa\"", {"must be in [0.001 kPa, 1e9 kPa] because less is"});
   expect_complaint(smallest + "[contact]\nstiffness_ratio = 20", {"must be in (0, 10] because without tangential"});
   for (const char *angle : {"90 deg", "185 deg", "-1 deg", "1.6 rad"})
     expect_complaint(smallest + fmt::format("[contact]\nfriction = \"{}\"", angle), {"must be in [0 deg, 90 deg)"});

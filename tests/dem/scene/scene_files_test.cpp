@@ -46,7 +46,7 @@ TEST(Scenes, AllParseAndSayWhatTheyShow)
   EXPECT_EQ(n_scenes, 24);
 }
 
-/// A scene of the cell that is to be compared with one of the box differs from it in words and in the domain only.
+/// A scene of the cell for comparison with one of the box differs from it in words and in the domain only.
 TEST(Scenes, PeriodicTwinsEqualThoseOfTheBox)
 {
   const std::string folder = ISOSTAT_SOURCE_DIR "/apps/scenes/";

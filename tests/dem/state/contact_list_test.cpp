@@ -13,7 +13,7 @@ using Pair = ContactList::Pair;
 
 HistoryLayout layout_of(LawFeatures on) { return LinearRolling().with(on).history(); }
 
-/// A history that tells from which pair it is.
+/// A history that shows from which pair it is.
 ContactHistory marked(const Pair &p)
 {
   const double a = p.first + 1, b = p.second + 1;

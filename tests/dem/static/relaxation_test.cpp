@@ -68,7 +68,7 @@ TEST(Relaxation, ABalancedPackingStaysToTheTolerance)
   rve.relax({1e-6, 0});
   const Mat3 before = rve.stress();
   const RveResponse again = rve.relax({1e-6, 0});
-  EXPECT_LE(again.steps, 11u) << "balance is looked at every ten iterations";
+  EXPECT_LE(again.steps, 11u) << "balance is checked every ten iterations";
   EXPECT_BELOW_BECAUSE((rve.stress() - before).norm(), 1e-6 * before.norm(), "balanced to 1e-6");
 }
 

@@ -226,7 +226,7 @@ TEST(Iwan, SmallSubstepsChangeLittle)
   EXPECT_NEAR_BECAUSE(a.iwan.mean_pressure(0), b.iwan.mean_pressure(0), 0.01 * p0,
                       "first order in a sub-step that is ten times longer and more");
   EXPECT_NEAR_BECAUSE(a.iwan.mean_pressure(0), c.iwan.mean_pressure(0), 1e-6 * p0,
-                      "the same sub-steps, but for round-off of their strains");
+                      "the same sub-steps, except for round-off of their strains");
 }
 
 TEST(Iwan, TangentIsTheDerivativeOfTheTrial)

@@ -222,8 +222,8 @@ TEST(Ricker, ConvergesToTheClosedFormWithTheSquareOfTheInterval)
     }
   const Motion m = ricker_motion(2, 2, 1, 0.005);
   EXPECT_NEAR_BECAUSE(m.peak(), 2, crest);
-  EXPECT_NEAR_BECAUSE(m.velocity(5), 0, 1e-14, "what is left of the pulse and round-off");
-  EXPECT_NEAR_BECAUSE(m.displacement(5), 0, 1e-14, "what is left of the pulse and round-off");
+  EXPECT_NEAR_BECAUSE(m.velocity(5), 0, 1e-14, "what remains of the pulse and round-off");
+  EXPECT_NEAR_BECAUSE(m.displacement(5), 0, 1e-14, "what remains of the pulse and round-off");
 }
 
 TEST(AnalyticMotions, BadArguments)
@@ -278,7 +278,7 @@ TEST(Baseline, QuadraticTakesAParabolaOffWhole)
   EXPECT_BELOW_BECAUSE(difference(twice, drifted), 1e-10,
                        "round-off of sums of 4,000 samples, integrated twice over 40 s");
   EXPECT_BELOW_BECAUSE(only.peak(), 1e-12, "round-off of a linear system of three unknowns");
-  // A clean record stays what it was, but for its own slow part.
+  // A clean record stays what it was, except for its own slow part.
   const double change = largest_difference([&](double t) { return clean.acceleration(t); }, record, 40);
   printf("baseline: clean record of peak %.2f m/s2 changed by %.1e m/s2\n", clean.peak(), change);
   EXPECT_BELOW_BECAUSE(change, 0.02 * clean.peak(), "the slow part of the record itself, 2 % of its peak at most");

@@ -10,7 +10,7 @@
 
 namespace isostat
 {
-/// Soil whose shear modulus hangs on the shear strain gamma = 2 sqrt(J2) reached, so that answers are known in closed
+/// Soil whose shear modulus depends on the shear strain gamma = 2 sqrt(J2) reached, so that answers are known in closed
 /// form: s = 2 G(gamma) e. It can refuse increments, as a volume of grains may.
 class SecantMaterial : public Material
 {

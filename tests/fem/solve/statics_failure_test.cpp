@@ -44,7 +44,7 @@ TEST(StaticsFailure, RefusedIncrementsAreHalved)
   EXPECT_LT(statics.effort().substeps, before);
 }
 
-/// Given up after some trials, the state is the one before the step, to the bit.
+/// Given up after some trials, the state is the one before the step, bit for bit.
 TEST(StaticsFailure, AStepThatIsGivenUpLeavesNoTrace)
 {
   const Discretisation<1> space(sheared_column_mesh(), fixed_base());
@@ -72,7 +72,7 @@ TEST(StaticsFailure, AStepThatIsGivenUpLeavesNoTrace)
   EXPECT_EQ(found[0], found[1]);
 }
 
-/// More than the strength: the state is the last one that stands, just below it, and a smaller load goes on from there.
+/// More than the strength: the state is the last one in equilibrium, just below it; a smaller load still works.
 TEST(StaticsFailure, MoreThanTheStrength)
 {
   const Discretisation<1> space(sheared_column_mesh(), fixed_base());
@@ -93,7 +93,7 @@ TEST(StaticsFailure, MoreThanTheStrength)
     {
       std::printf("%s\n", failure.what());
     }
-  std::printf("stands at %.6f of the strength\n", statics.time());
+  std::printf("in equilibrium up to %.6f of the strength\n", statics.time());
   EXPECT_GT(statics.time(), 0.95);
   EXPECT_LT(statics.time(), 1);
   EXPECT_EQ(statics.n_steps(), 0u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run that is saved and goes on elsewhere has the same bits. Sand that is sheared while it drains.
+// A run that is saved and continues elsewhere has the same bits. Sand that is sheared while it drains.
 #include "fem/material/iwan.hpp"
 #include "fem/solve/statics.hpp"
 #include "tests/fem/solve/secant_material.hpp"

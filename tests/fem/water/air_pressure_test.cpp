@@ -79,7 +79,7 @@ double error_at_rest(const Case &c)
 
 TEST(AirPressure, AtRestLoadsAreSharedByBoylesLaw)
 {
-  const test::Tolerance mesh{1e-5, "the pressure is linear in each of 8 elements, and what is left of the vibration"};
+  const test::Tolerance mesh{1e-5, "the pressure is linear in each of 8 elements, and what remains of the vibration"};
   EXPECT_BELOW_BECAUSE(error_at_rest({0.98, 0, 200e3}), mesh);
   EXPECT_BELOW_BECAUSE(error_at_rest({0.98, 0, -100e3}), mesh);
   EXPECT_BELOW_BECAUSE(error_at_rest({0.999, 0, -150e3}), 2e-3, // under the pressure of vapour at the surface

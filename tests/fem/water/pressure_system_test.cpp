@@ -72,7 +72,7 @@ std::array<double, 2> response(const Regime &regime)
 }
 } // namespace
 
-constexpr test::Tolerance waves{2e-3, "second order in the step and the cells, and what is left of the transient"};
+constexpr test::Tolerance waves{2e-3, "second order in the step and the cells, and what remains of the transient"};
 
 TEST(Biot, HarmonicTractionInThreeRegimes)
 {

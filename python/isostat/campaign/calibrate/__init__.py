@@ -9,8 +9,8 @@
 
 Its folder:
 
-     plan.toml  scene.toml  laboratory/NAME.csv   what makes its results: tells this calibration from another one
-     runs/TRIAL/CURVE_seedN/                      results of a run; beside it .toml (scene), .log, .failed (why)
+     plan.toml  scene.toml  laboratory/NAME.csv   what makes its results: distinguishes this calibration from others
+     runs/TRIAL/CURVE_seedN/                      results of a run; next to it .toml (scene), .log, .failed (why)
      specimens/                                   prepared for them
      trials.csv  curves.csv  calibrate.json  summary.txt  best_scene.toml  best/CURVE.toml  figures/
 
@@ -75,7 +75,7 @@ def search(settings: Any, start: list[float], objective: Callable[[list[float]],
     or CRS2 with local mutation (Kaelo and Ali 2006). It always asks for the same points in the same order, so that it
     can be repeated from known values. The best point is not returned: the objective knows what it has been asked.
 
-    Returns why it ended.   Raises what the objective raises, but for BudgetUsed
+    Returns why it ended.   Raises what the objective raises, except for BudgetUsed
     """
     optimiser = nlopt()
     optimiser.srand(SEED)
@@ -197,7 +197,7 @@ def main(words: list[str]) -> int:
                            "element tests")
     line.add_argument("plan", metavar="PLAN", nargs="?", type=lambda name: command.shipped("scenes/calibrate", name),
                       help="plan file (TOML); see docs/campaigns/calibrate.md")
-    line.add_argument("--dry-run", action="store_true", help="check the plan, print how many runs it takes, and stop")
+    line.add_argument("--dry-run", action="store_true", help="check the plan, print how many runs it needs, and stop")
     line.add_argument("--print-defaults", action="store_true",
                       help="print a commented plan with all keys, units and ranges")
     command.add_campaign(line, "results/<plan name>")

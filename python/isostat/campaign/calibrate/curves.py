@@ -83,7 +83,7 @@ def compare(laboratory: Curve, models: list[Curve], plan: Any, settings: Any) ->
         misfit^2 = 1/(2n) sum_i [ ((q_i - q_i^lab)/max|q^lab|)^2 + ((v_i - v_i^lab)/max|v^lab|)^2 ]
 
     Maxima over the compared strains; between rows curves are straight. The scatter has the standard error of the mean
-    in place of the differences: a misfit of this size cannot be told from none.
+    in place of the differences: a misfit of this size cannot be distinguished from none.
 
     Raises InputError: a laboratory curve that is zero throughout; a model curve that ends too early
     """
@@ -157,7 +157,7 @@ class Table:
         self.values = (self.cells * factors).T
         for k in range(2 if plan.test == "drained" else 1, len(self.names)):
             self.check(~(np.abs(self.values[k]) <= GREATEST_STRESS), k,
-                       lambda _: "is no stress of a soil. Correct the number, or the unit in the header.")
+                       lambda _: "is not a stress of soil. Correct the number, or the unit in the header.")
 
     def problem(self, line: int, what: str) -> _core.InputError:
         """To be raised."""
@@ -201,7 +201,7 @@ class Table:
 def check_strains(table: Table, strain: np.ndarray) -> None:
     plan, last = table.plan, np.arange(len(strain)) == len(strain) - 1
     table.check(np.abs(strain) >= 1, 0,
-                lambda _: "is no strain: 1 is 100 percent. Is it given in percent? Correct the unit in the header.")
+                lambda _: "is not a strain: 1 is 100 percent. Is it given in percent? Correct the unit in the header.")
     table.check(np.diff(strain, prepend=-np.inf) <= 0, 0, lambda row: f"goes back from {table.cells[row - 1, 0]:g} in "
                 f"the row before; must advance from row to row in {plan.direction}. Remove unloading, or correct "
                 f"direction in {plan.where}.")
@@ -215,7 +215,7 @@ def check_strains(table: Table, strain: np.ndarray) -> None:
 def check_volumes(table: Table, strain: np.ndarray, volume: np.ndarray) -> None:
     plan = table.plan
     table.check(np.abs(volume) >= 1, 1,
-                lambda _: "is no volumetric strain: 1 is 100 percent. Correct the unit in the header.")
+                lambda _: "is not a volumetric strain: 1 is 100 percent. Correct the unit in the header.")
     first = (strain > 0) & (strain <= FIRST_STRAIN)
     table.check(first & (direction(plan) * volume < -0.1 * strain), 1, lambda row:
                 f"at an axial strain of {100 * strain[row]:g} %: a drained test "

@@ -11,7 +11,7 @@ from typing import Any
 
 SECTIONS = {
     "specimens": "The packings. All trials have the same seeds, so that they differ by their parameters alone.",
-    "budget": "When the search ends. May be changed, and the same command then goes on.",
+    "budget": "When the search ends. May be changed, and the same command then continues.",
     "optimiser": "Where to look next. First the start, then a design, then the method from the best of these.",
     "misfit": "How far a model curve is from that of the laboratory (docs/campaigns/calibrate.md).",
     "parameter": "A number of the scene to be found. Which curves it can be found from is up to you.",
@@ -58,7 +58,7 @@ KEYS = (
     Key("specimens.seeds", 2, "Specimens per curve and trial; their mean is compared with the laboratory.",
         "in [1, 1000]"),
     Key("specimens.first_seed", 1, "grading.seed of the first; the others follow.", ">= 0"),
-    Key("specimens.full_grains", 10000, "Grains of the scenes that are left ready to run.", "in [50, 100000000]"),
+    Key("specimens.full_grains", 10000, "Grains of the final scenes, which are ready to run.", "in [50, 100000000]"),
     Key("specimens.inertial_number", 4e-4, "Inertial number of the trials' tests; left out: as the scene says. The "
         "scenes that are left ready to run keep theirs.", "in (0, 1)", "optional"),
 
@@ -89,7 +89,7 @@ KEYS = (
     Key("parameter.curve", "dense", "Name of the only curve, or group of curves, that it belongs to (a density, say); "
         "left out: all.", need="optional"),
 
-    Key("curve.file", "TMD3.csv", "Table with a header, columns between commas, beside the plan.", need="required"),
+    Key("curve.file", "TMD3.csv", "Table with a header, columns between commas, next to the plan.", need="required"),
     Key("curve.test", "drained", need="required", choices=TESTS),
     Key("curve.name", "loose", "Names it in tables and folders; left out: the file without its ending.",
         need="optional"),
@@ -104,7 +104,7 @@ KEYS = (
         "where a density takes several.", "in [0 deg, 90 deg)", "optional", reads_as="specimen.preparation_friction"),
     Key("curve.pressure", "200 kPa", "Effective pressure before the test; left out: that of the scene.",
         "in [0.001 kPa, 1e9 kPa]", "optional", reads_as="specimen.pressure"),
-    Key("curve.strain_end", 0.1, "Axial strain (its amount) up to which curves are compared.", "in (0, 0.9]",
+    Key("curve.strain_end", 0.1, "Amount of axial strain up to which curves are compared.", "in (0, 0.9]",
         reason="because this is a strain, not percent"),
     Key("curve.strains", "linear", "Strains of the file: linear, change over first height or volume; or logarithmic.",
         choices=("linear", "logarithmic")),

@@ -121,7 +121,7 @@ def read_value(key: Key, value: Any) -> Any:
 def read_table(document: Document, section: str, path: str, table: Any) -> SimpleNamespace:
     """One table of a plan, with its defaults; that of columns as keys "columns.p"."""
     if not isinstance(table, dict):
-        raise document.refuse(path, f"must be a table. Write {heading(section)} on a line of its own.", table)
+        raise document.refuse(path, f"must be a table. Write {heading(section)} on its own line.", table)
     prefix = f"{path}." if path else ""
     if section == "curve" and not isinstance(columns := table.pop("columns", {}), dict):
         raise document.refuse(f"{path}.columns", 'must be a table, e.g. columns = { p = "p[kPa]" }.', columns)
@@ -216,7 +216,7 @@ def checked_plan(document: Document) -> SimpleNamespace:
 def read_text(path: str, what: str) -> str:
     """Of a file in UTF-8, which may be packed by gzip.   Raises InputError"""
     if not os.path.isfile(path):  # a pipe or a device may have no end
-        raise _core.InputError(f"{path}: is not there, or is no file. Give {what}.")
+        raise _core.InputError(f"{path}: does not exist, or is no file. Give {what}.")
     try:
         data = pathlib.Path(path).read_bytes()
         return (gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data).decode("utf-8-sig")
@@ -236,7 +236,7 @@ def read_plan(path: str) -> SimpleNamespace:
             return os.path.normpath(place)
         tried = list(dict.fromkeys(map(os.path.abspath, places)))  # the folder of the plan may be the working one
         missing = f"neither {' nor '.join(tried)}" if len(tried) > 1 else f"no {tried[0]}"
-        raise document.refuse(key, f"is not there: {missing}. A relative path counts from the folder of the plan "
+        raise document.refuse(key, f"does not exist: {missing}. A relative path counts from the folder of the plan "
                               "or else from the working directory; correct it.", name)
 
     plan.scene_path = found("scene", plan.scene, str(command.SCENES / "scenes" / plan.scene))

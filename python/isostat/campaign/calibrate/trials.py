@@ -46,7 +46,7 @@ def trial_id(parameters: list[Parameter], values: list[float]) -> str:
 
 class Trials:
     """Runs trials, and answers those that have been run from what they left. A run that has finished, or failed by
-    itself, is never run again; one that was killed goes on from its checkpoint."""
+    itself, is never run again; one that was killed continues from its checkpoint."""
 
     def __init__(self, plan: Any, scenes: SceneMaker, folder: pathlib.Path, executor: concurrent.futures.Executor,
                  quiet: bool):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """isostat ensemble: a column of soil with many sets of packings, with many records, and the bands of all.
 
-    FOLDER/scene.toml           what all share: tells this ensemble from another one
+    FOLDER/scene.toml           what all share: distinguishes this ensemble from others
     FOLDER/scenes/NAME.toml     scene of a member       FOLDER/members/NAME/   its results, kept by the next call
     FOLDER/logs/NAME.log        what it printed         FOLDER/ensemble.json, members.csv, bands_*.csv   results of all
 
@@ -71,11 +71,11 @@ def main(words: list[str]) -> int:
                            "bands of all")
     command.add_scene(line, "scene file (TOML) of soil_column; see docs/column_scene_reference.md")
     line.add_argument("-n", "--members", type=command.count(1, 10000),
-                      help="so many members, each with other packings of the library; the same command goes on with those "
+                      help="this many members, each with other packings of the library; the same command continues with those "
                            "that are missing")
     line.add_argument("--records", type=lambda text: text.split(","), action="extend", default=[], metavar="FILES",
-                      help="files between commas whose motions take the place of the scene's record: so many members, or "
-                           "with -n so many times as many")
+                      help="files between commas whose motions take the place of the scene's record: this many members, or "
+                           "with -n this many times as many")
     line.add_argument("-t", "--threads", type=command.count(0, 1024), default=1,
                       help="threads of each member that share its packings, 0: all the process may use (default 1). Results "
                            "do not depend on it")

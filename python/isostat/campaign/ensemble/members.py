@@ -50,7 +50,7 @@ def check_kind(scene, n: int) -> None:
                                "not parts of the mesh, are shared out then.")
     for k, layer in enumerate(layers):
         if layer["material"] == "user":
-            raise _core.InputError(f"layer.{k}.material = \"user\": members run in processes of their own, which do not have "
+            raise _core.InputError(f"layer.{k}.material = \"user\": members run in separate processes, which do not have "
                                    "materials of Python. Run them there with isostat.column.run(), seed by seed.")
     if n > 1 and not grains:
         raise _core.InputError(f"-n {n}: without a layer of grains, whose seeds differ, all members would be the same. "

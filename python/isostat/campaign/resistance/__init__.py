@@ -3,7 +3,7 @@
 
      CSR |  o o                CSR = tau_amp / sigma'_v0 in simple shear, q_amp / (2 p0') in triaxial tests
          |    o o o            every o is a run of element_test; specimens (seeds 1..n) are shared between ratios
-         |        o  oo        finished runs are kept, the same command goes on
+         |        o  oo        finished runs are kept, the same command continues
          |            o  o->   fit CSR = a N^-b; runs that do not liquefy are arrows and not in the fit
          +--------------- log N
 
@@ -89,9 +89,9 @@ def main(words: list[str]) -> int:
                       "simple shear, q_amp / (2 p0') in triaxial tests")
     line.add_argument("-n", "--realisations", type=command.count(1, 1000), default=3,
                       help="specimens per ratio: seeds 1 to this (default 3)")
-    line.add_argument("--cycles", type=command.count(1, 100000), default=100, help="a run ends after so many (default 100)")
+    line.add_argument("--cycles", type=command.count(1, 100000), default=100, help="a run ends after this many (default 100)")
     line.add_argument("--reversals-after", type=command.count(0, 1000), default=1,
-                      help="a run ends after so many reversals since liquefaction (default 1; 0: at once)")
+                      help="a run ends after this many reversals since liquefaction (default 1; 0: at once)")
     command.add_campaign(line, "results/<scene name>_resistance")
     options = line.parse_args(words)
     return command.run_campaign(options, lambda executor: find_resistance(options, executor))

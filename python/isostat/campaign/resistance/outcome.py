@@ -79,7 +79,7 @@ def fit_power_law(outcomes: list[Outcome]) -> dict[str, Any] | None:
     """CSR = a N^-b through the liquefied runs: least squares of log N, which scatters at a given CSR.
 
     b_error is the standard error of b; it and R2 are None for two runs, through which a line always goes. None if fewer
-    than two ratios have a liquefied run, or if all liquefied within a cycle: counted by half cycles, these tell no slope.
+    than two ratios have a liquefied run, or if all liquefied within a cycle: counted by half cycles, these give no slope.
     """
     found = [outcome for outcome in outcomes if outcome.to_liquefaction is not None]
     ratio, cycles = (np.log([getattr(outcome, name) for outcome in found]) for name in ("ratio", "to_liquefaction"))

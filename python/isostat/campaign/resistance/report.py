@@ -37,7 +37,7 @@ def fit_text(fit: dict[str, Any] | None, outcomes: list[Outcome]) -> str:
     if not fit:
         return "  fit                      none: fewer than two ratios have a run that liquefied, or all within a cycle"
     error = (f"b +- {fit['b_error']:.3f}, R^2 = {fit['R2']:.3f}" if fit["b_error"] is not None
-             else "whose error two runs cannot tell")
+             else "whose error two runs cannot give")
     left_out = f" ({fit['left_out']} did not liquefy and are left out)" if fit["left_out"] else ""
     reached = [outcome.to_liquefaction for outcome in outcomes if outcome.to_liquefaction is not None]
     outside = "" if min(reached) <= REFERENCE <= max(reached) else " (extrapolated)"

@@ -31,7 +31,7 @@ def parse_ratios(text: str) -> list[float]:
             raise _core.InputError(f"--ratios {text}: \"{word}\" is not a number in (0, 1]. Give cyclic stress ratios "
                                    "between commas, e.g. --ratios 0.10,0.15,0.20.")
         if f"{ratio:g}" in [f"{other:g}" for other in ratios]:  # as runs are named
-            raise _core.InputError(f"--ratios {text}: {ratio:g} stands twice. For more tests at a ratio raise "
+            raise _core.InputError(f"--ratios {text}: {ratio:g} appears twice. For more tests at a ratio raise "
                                    "--realisations.")
         ratios.append(ratio)
     if not ratios:

@@ -4,7 +4,7 @@
 
 namespace isostat::test
 {
-/// A contact law as somebody else would add it, outside the library: spheres that only repel, without memory,
+/// A contact law as a user would add it, outside the library: spheres that only repel, without memory,
 ///
 ///     fn = kn u,   kn = 2 softness E R1 R2/(R1+R2);   a wall counts as a sphere of the same radius
 struct SoftSpheres final : ContactLaw

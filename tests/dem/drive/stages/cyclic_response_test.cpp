@@ -67,7 +67,7 @@ TEST_F(Response, StrainThatRunsOnUnderAFallingLoadIsFlow)
   go(50e3, 2e-3), go(10e3, 0.0009);
   EXPECT_EQ(flows, 0) << "not yet 0.1 % of strain beyond the peak";
   go(8e3, 0.05);
-  EXPECT_EQ(flows, 1) << "told once";
+  EXPECT_EQ(flows, 1) << "reported once";
   EXPECT_EQ(name(), "flow");
   EXPECT_FALSE(reverses_stress(state.undrained.response));
   EXPECT_EQ(state.undrained.response.flow->peak, 50e3);

@@ -50,7 +50,7 @@ TEST_F(PathTableTest, MistakesAreNamedWithTheirLine)
   };
   says("", "1", "a path has the columns");
   says("stress_x (kPa),time (s)\n1,2\n", "1", "a path has the columns");
-  says("step (-),stress_x\n1,2\n", "1", "\"stress_x\" is no column of a path");
+  says("step (-),stress_x\n1,2\n", "1", "\"stress_x\" is not a column of a path");
   says("step (-),stress_x (-)\n1,2\n", "1", "stresses in (Pa)");
   says("step (-),tau (Pa),tau (kPa)\n1,2,3\n", "1", "twice");
   says("step (-),tau (Pa)\n0,2\n", "2", "must be above 0");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of how stages ended. Runs of packings: tests/verification/path_ends_test.cpp.
+// How the end of stages is reported. Runs of packings: tests/verification/path_ends_test.cpp.
 #include "dem/drive/stages/stage_end.hpp"
 
 #include "dem/drive/programme.hpp"
