@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The soil column against solutions that owe nothing to Isostat: studies/column_masing.py, studies/column_layers.py."""
 import numpy as np
@@ -7,7 +6,6 @@ from column_support import ColumnTest
 from studies import column_cases as cases
 from studies.column_layers import equivalent_linear, hyperbola
 from studies.column_masing import Masing
-from support import main
 
 
 class Sand(ColumnTest):
@@ -81,7 +79,3 @@ class Sand(ColumnTest):
         self.assert_below(off[0], 0.006, "dispersion in 40 linear elements")
         self.assert_below(off[1], 0.03, "strains of 3 % of the reference strain")
         self.assertGreater(off[2], 0.2, "one stiffness for all of a strong motion is another soil")
-
-
-if __name__ == "__main__":
-    main()

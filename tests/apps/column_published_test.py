@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The soil column against the published example of the program nrattle (tests/reference/nrattle)."""
 import numpy as np
@@ -6,7 +5,6 @@ import numpy as np
 from column_support import ColumnTest
 from studies import column_cases as cases
 from studies.column_layers import Layers
-from support import main
 
 
 class Published(ColumnTest):
@@ -25,7 +23,3 @@ class Published(ColumnTest):
         off = np.abs(cases.amplification(rows, frequency[low]) / amplification[low] - 1)
         self.assert_below(off, 0.005, "five quadratic elements for the wave of 10 Hz")
         self.assert_below(np.median(off), 5e-4, "waves still in the ground after 9 s")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,11 +1,9 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A drained test whose sides cannot follow says so in summary, on stderr and in summary.json, or fails if it is
 told to; a resumed run says the same."""
-import json
 import signal
 
-from support import AppTest, main, tiny_scene
+from support import AppTest, tiny_scene
 
 DRAINED = '[[stage]]\nkind = "drained"\nstrain = 0.02\nstrain_rate = "{rate} 1/s"\n'
 LOSS = "stage 0: sigma_x off its target by more than 1 %"
@@ -16,7 +14,7 @@ class Control(AppTest):
         return self.write(f"scene_{rate}.toml", tiny_scene(stages=DRAINED.format(rate=rate)))
 
     def losses(self, folder):
-        return json.loads((self.folder / folder / "summary.json").read_text())["control_lost"]
+        return self.summary_of(folder)["control_lost"]
 
     def test_a_test_that_keeps_its_stresses_says_nothing(self):
         result = self.run_test(self.scene(0.5), "-o", "slow")
@@ -49,7 +47,3 @@ class Control(AppTest):
                           *often)
         self.assert_done(self.run_test(scene, "-o", "parts", "--resume", *often))
         self.assertEqual(self.losses("parts"), self.losses("whole"))
-
-
-if __name__ == "__main__":
-    main()

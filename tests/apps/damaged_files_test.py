@@ -1,16 +1,12 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Damaged files of a results folder: each program says where, what and what to do, and exits with 2."""
 import json
-import pathlib
 import shutil
-import sys
 import tomllib
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-from figures.files import Damaged, read_parsed  # noqa: E402  (the path comes first)
-from report_support import ReportTest  # noqa: E402
-from support import CYCLIC, main  # noqa: E402
+from figures.files import Damaged, read_parsed
+from report_support import ReportTest
+from support import CYCLIC
 
 
 class Tables(ReportTest):
@@ -55,7 +51,3 @@ class Programs(ReportTest):
                 self.assert_refused(self.run_app("isostat", *arguments), f"cut/{name}:5: is damaged (", "Restore it",
                                     "--resume")
             path.write_text(whole, encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

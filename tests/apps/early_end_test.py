@@ -1,12 +1,10 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A stage that its limit of steps ends says so in summary, on stderr, in summary.json and in the report; a resumed run
 says the same; cycles are counted. Conditions that are met at once or never: tests/verification/path_ends_test.cpp."""
-import csv
-import json
 import signal
 
-from support import AppTest, main, tiny_scene
+from report_support import page
+from support import AppTest, columns, tiny_scene
 
 PATH = '[[stage]]\nkind = "path"\nx.keep = "stress"\nz.keep = "stress"\n'
 LIMITED = PATH + 'max_steps = 400\nuntil = { strain = 0.05, q = "150 kPa" }\n'
@@ -25,15 +23,12 @@ class EarlyEnd(AppTest):
     def scene(self, name, stages):
         return self.write(f"{name}.toml", tiny_scene(stages=stages))
 
-    def numbers(self, folder):
-        return json.loads((self.folder / folder / "summary.json").read_text())
-
     def test_a_stage_that_its_limit_ended_says_so(self):
         result = self.run_test(self.scene("limited", LIMITED + REST), "-o", "limited")
         self.assert_done(result)
         self.assertIn("warning: " + TEXT, result.stderr)
         self.assertIn("ended early              " + TEXT, result.stdout)
-        (end,) = self.numbers("limited")["ended_early"]
+        (end,) = self.summary_of("limited")["ended_early"]
         self.assertEqual((end["stage"], end["times"], end["at_once"]), (0, 1, False))
         self.assertIn("until.q = 150 kPa (", end["text"])
 
@@ -45,7 +40,7 @@ class EarlyEnd(AppTest):
         self.assertNotIn("ended early", result.stdout)
         self.assertIn("ended                    stage 0 (path): ended by until.strain = 0.01 % (", result.stdout)
         self.assertIn("ended                    stage 1 (path): ended by max_steps = 50\n", result.stdout)
-        numbers = self.numbers("whole")
+        numbers = self.summary_of("whole")
         self.assertEqual(numbers["ended_early"], [])
         self.assertEqual([(end["stage"], end["by"], end["early"]) for end in numbers["ended"]],
                          [(0, "strain", False), (1, "max_steps", False)])
@@ -64,14 +59,14 @@ class EarlyEnd(AppTest):
         self.run_and_stop(0.05, signal.SIGKILL, (self.folder / "parts/checkpoint/last.h5", True), scene, "-o", "parts",
                           *often)
         self.assert_done(self.run_test(scene, "-o", "parts", "--resume", *often))
-        self.assertEqual(self.numbers("parts")["ended_early"], self.numbers("whole")["ended_early"])
-        self.assertEqual(len(self.numbers("parts")["ended_early"]), 1)
+        self.assertEqual(self.summary_of("parts")["ended_early"], self.summary_of("whole")["ended_early"])
+        self.assertEqual(len(self.summary_of("parts")["ended_early"]), 1)
 
     def test_cycles_of_a_path_have_a_response(self):
         result = self.run_test(self.scene("cyclic", CYCLIC_PATH), "-o", "cyclic")
         self.assert_done(result)
         self.assertIn("  cyclic response          ", result.stdout)
-        response = self.numbers("cyclic")["cyclic_response"]
+        response = self.summary_of("cyclic")["cyclic_response"]
         self.assertIn(response["name"],
                       ("flow", "limited flow", "cyclic mobility", "plastic strain accumulation", "no failure"))
         self.assertTrue(response["stress_reversal"])
@@ -86,15 +81,15 @@ class EarlyEnd(AppTest):
         stages = (PATH + "until.strain = 2e-4\n" + PATH +
                   'direction = "extension"\nuntil.strain = 2e-4\nmax_steps = 5\n'
                   '[[stage]]\nkind = "repeat"\nstages = 2\ntimes = 3\n')
-        result = self.run_app("element_test", self.scene("cycles", stages), "-o", "cycles")
+        result = self.run_test(self.scene("cycles", stages), "-o", "cycles")
         self.assert_done(result)
         for part in ("stage 0 (path), cycle 2 of 3 of stages 0 to 1", "repeated                 stages 0 to 1, 3 times",
                      "stage 1 (path), cycle 1 of 3 of stages 0 to 1: ended by max_steps = 5", "3 times in all"):
             self.assertIn(part, result.stderr + result.stdout)
-        with open(self.folder / "cycles/history.csv", newline="", encoding="utf-8") as file:
-            rows = [(float(row["done (-)"]), float(row["stage (-)"])) for row in csv.DictReader(file)]
-        self.assertEqual(sorted(set(rows)), [(0, 0), (1, 1), (2, 0), (3, 1), (4, 0), (5, 1)])
-        report = (self.folder / "cycles/report.html").read_text(encoding="utf-8")
+        rows = columns(self.folder / "cycles/history.csv")
+        self.assertEqual(sorted(set(zip(rows["done"], rows["stage"]))),
+                         [(0, 0), (1, 1), (2, 0), (3, 1), (4, 0), (5, 1)])
+        report = page(self.folder / "cycles")
         self.assertIn("Stage 0, path, the last of 3 times:", report)
         self.assertIn("ended by max_steps = 5 before any of its conditions was met", report)
 
@@ -103,8 +98,4 @@ class EarlyEnd(AppTest):
         self.assert_done(result)
         self.assertIn("warning: stage 0 (path): ended in its first step, because one of its conditions was met when it "
                       "began: until.p = 200 kPa (", result.stderr)
-        self.assertTrue(self.numbers("met")["ended_early"][0]["at_once"])
-
-
-if __name__ == "__main__":
-    main()
+        self.assertTrue(self.summary_of("met")["ended_early"][0]["at_once"])

@@ -1,11 +1,9 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A test that has finished or was stopped goes on to a later end, to the bits of one long run; what else differs in its
 scene is refused, and what is there stays."""
-import json
 import signal
 
-from support import AppTest, contents, main, tiny_scene
+from support import AppTest, contents, tiny_scene
 
 STAGES = """[[stage]]
 kind = "rebalance"
@@ -29,9 +27,6 @@ class Extend(AppTest):
         return self.run_test(self.scene, "-o", folder, "--set", f"{CYCLES}={cycles}", "--set", "output.folder=x",
                              *arguments)
 
-    def summary(self, folder):
-        return json.loads((self.folder / folder / "summary.json").read_text())
-
     def assert_same_run(self, one, other):
         left, right = ({name: data for name, data in contents(self.folder / folder).items() if name not in NOT_COMPARED}
                        for folder in (one, other))
@@ -42,7 +37,7 @@ class Extend(AppTest):
     def test_a_finished_run_goes_on_to_the_same_bits(self):
         self.assert_done(self.run_to("whole", 4))
         self.assert_done(self.run_to("parts", 2))
-        self.assertEqual(self.summary("parts")["reversals"], 4)
+        self.assertEqual(self.summary_of("parts")["reversals"], 4)
         stale = [self.folder / "parts" / name for name in ("figures/fig_fabric.png", "report.html")]
         own = self.folder / "parts/figures/mine.png"
         own.parent.mkdir()
@@ -54,7 +49,7 @@ class Extend(AppTest):
         self.assertEqual([path.exists() for path in (*stale, own)], [False, False, True])
         own.unlink()
         self.assert_same_run("whole", "parts")
-        one, other = self.summary("whole"), self.summary("parts")
+        one, other = self.summary_of("whole"), self.summary_of("parts")
         self.assertLess(other.pop("steps_since_resumed"), one.pop("steps_since_resumed"))
         for summary in (one, other):
             del summary["seconds"]
@@ -110,7 +105,3 @@ times = 2
         self.assert_done(result)
         self.assertIn("this run has finished", result.stdout)
         self.assertIn("a later end", result.stdout)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,11 +1,10 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Ctrl-C while figures are drawn: the run has finished, and the next call draws what is missing."""
 import os
 import signal
 
 from column_support import ColumnTest, settings
-from support import MONOTONIC, contents, main, tiny_scene
+from support import MONOTONIC, contents, tiny_scene
 
 
 class Interrupted(ColumnTest):
@@ -28,7 +27,7 @@ class Interrupted(ColumnTest):
                 if not name.startswith("figures") and name != "report.html"}
 
     def assert_drawn_by_resume(self, *command):
-        before = self.numbers()
+        before = self.summary_of()
         result = self.run_app(*command, "-o", "out", "--resume", "--no-figures")
         self.assert_done(result)
         self.assertFalse((self.folder / "out/report.html").exists())
@@ -38,7 +37,7 @@ class Interrupted(ColumnTest):
         self.assertIn("Its figures are missing, they are drawn now", result.stdout)
         self.assertNotIn("--overwrite", result.stdout)
         self.assertTrue((self.folder / "out/report.html").exists())
-        self.assertEqual(self.numbers(), before)
+        self.assertEqual(self.summary_of(), before)
         again = self.run_app(*command, "-o", "out", "--resume")
         self.assertIn("Start it anew with --overwrite", again.stdout)
 
@@ -74,7 +73,3 @@ class Interrupted(ColumnTest):
         self.stop_drawing(*ensemble, begun="summary.txt", parts=("the same command goes on",))
         self.assert_done(self.run_app(*ensemble, "-o", "out", "-q"))
         self.assertTrue((self.folder / "out/report.html").exists())
-
-
-if __name__ == "__main__":
-    main()

@@ -1,10 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column with packings of grains at its Gauss points: a few of 250 grains, shaken until they liquefy in 0.3 s."""
 import errno
-import json
 import os
-import pathlib
 import random
 import re
 import shutil
@@ -16,9 +13,9 @@ import h5py
 import numpy as np
 
 from column_support import NO_FILES, ColumnTest, history, settings
-from support import TIME_LIMIT, children, contents, main, wait_until, written_since
+from support import ROOT, TIME_LIMIT, children, contents, wait_until, written_since
 
-SPECIMENS = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
+SPECIMENS = ROOT / "apps/scenes/rve_library.toml"
 GRAINS = """title = "grains"
 [mesh]
 degree = 1
@@ -93,7 +90,7 @@ class Bits(GrainColumnTest):
 
     def test_ranks_and_threads(self):
         self.whole()
-        summary = json.loads((self.folder / "whole/summary.json").read_text(encoding="utf-8"))
+        summary = self.summary_of("whole")
         names = set(self.files("whole"))
         self.assertLessEqual({"history.csv", "history.h5", "profiles.h5", "grain_history/history.csv",
                               "grain_history/history.h5", "grain_profiles/history.h5", "grains/d0_00002.h5",
@@ -281,7 +278,7 @@ class Alone(GrainColumnTest):
     def replay(self, *arguments):
         result = self.run_app("rve_replay", "whole/paths/d0", "-q", *arguments)
         self.assert_done(result)
-        return result.stdout, json.loads((self.folder / arguments[1] / "summary.json").read_text(encoding="utf-8"))
+        return result.stdout, self.summary_of(arguments[1])
 
     def test_stress_is_that_of_the_column_to_the_bit(self):
         text, summary = self.replay("-o", "alone", "--every", 5)
@@ -379,7 +376,3 @@ class Drained(GrainColumnTest):
         self.assertGreater(settled[-1], 1e-3)
         self.assert_below(np.ptp(settled[after]), 0.02 * settled[-1], "drained: it settles no more, but for 2 %")
         self.assert_below(abs(rows["residual"][-1]), 1e-10 * np.abs(rows["external"]).max(), "round-off of the work")
-
-
-if __name__ == "__main__":
-    main()

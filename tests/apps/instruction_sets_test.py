@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """One machine as another that has fewer instructions: each set its own bits, all the same test, and a run that goes on
 with another set than its checkpoint was written with says so."""
@@ -9,7 +8,7 @@ import signal
 import numpy as np
 
 from column_support import history
-from support import CYCLIC, AppTest, main, results, tiny_scene
+from support import CYCLIC, AppTest, results, tiny_scene
 
 SAVED = ("--set", "output.checkpoint=1e-9 min", "--no-figures", "-q")
 
@@ -61,7 +60,3 @@ class InstructionSets(AppTest):
     def test_other_programs(self):
         os.environ["ISOSTAT_INSTRUCTION_SET"] = "MMX"
         self.assert_refused(self.run_app("isostat", "convert", "a", "b"), "MMX", *self.sets)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs of element_test that are stopped, killed, resumed, or watched more or less closely go on to the same bits."""
 import pathlib
@@ -10,7 +9,7 @@ import time
 import h5py
 import numpy as np
 
-from support import AppTest, CYCLIC, MONOTONIC, REBALANCE, contents, main, tiny_scene
+from support import AppTest, CYCLIC, MONOTONIC, REBALANCE, contents, tiny_scene
 
 STAGES = REBALANCE.format(steps=1500) + MONOTONIC.format(steps=4000) + CYCLIC.format(steps=6000)
 EVERY_256_STEPS = ("--set", "output.checkpoint=1e-9 min")
@@ -145,7 +144,3 @@ class Output(AppTest):
                           "summary.json", "summary.txt"])
         self.assertGreater(len(list(pathlib.Path(self.folder / "full/snapshots").iterdir())), 10)
         self.assert_same_trajectory(full, bare)
-
-
-if __name__ == "__main__":
-    main()

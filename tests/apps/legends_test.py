@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """No legend of a figure lies over the points of its curves: element tests; columns are in figures_test.py."""
-import pathlib
-import sys
 
 import numpy as np
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / "apps")]
-from figures.common import STYLE, plt  # noqa: E402  (the path comes first)
-from figures.element_test import DRAWING  # noqa: E402
-from support import AppTest, CYCLIC, MONOTONIC, main, tiny_scene  # noqa: E402
+from figures.common import STYLE, plt
+from figures.element_test import DRAWING
+from support import AppTest, CYCLIC, MONOTONIC, tiny_scene
 
 DRAINED = '[[stage]]\nkind = "drained"\nstrain = 0.02\n'
 
@@ -60,7 +56,3 @@ class Legends(AppTest):
                              ("drained", DRAINED)):
             self.assert_done(self.run_test(self.write("scene.toml", tiny_scene(stages=stages)), "-o", name, "--quiet"))
             self.check(self.folder / name)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,27 +1,19 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What the figures of element tests are drawn against, and the peaks that the figures of columns name."""
 import json
-import pathlib
-import sys
 
-import matplotlib
 import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-from matplotlib.colors import PowerNorm  # noqa: E402
+from matplotlib.colors import PowerNorm
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "apps"), str(ROOT / "scripts")]
-import column_fixture as fixture  # noqa: E402  (the path comes first)
-from figures.column_expansion import expansion  # noqa: E402
-from figures.column_motion import motions, peak_text  # noqa: E402
-from figures.column_results import Column  # noqa: E402
-from figures.column_soil import time_bar  # noqa: E402
-from figures.common import STYLE, Run  # noqa: E402
-from figures.element_test import draw_pressure  # noqa: E402
-from support import AppTest, main  # noqa: E402
+import column_fixture as fixture
+from figures.column_expansion import expansion
+from figures.column_motion import motions, peak_text
+from figures.column_results import Column
+from figures.column_soil import time_bar
+from figures.common import STYLE, Run, plt
+from figures.element_test import draw_pressure
+from support import AppTest
 
 DIGITS = "round-off of a sum"
 
@@ -113,7 +105,3 @@ class Peaks(AppTest):
                     inside = (label.min > panel.min).all() and (label.max < panel.max).all()
                     self.assertTrue(inside, f"{axes.texts[0].get_text()}: {label} in {panel}")
                 plt.close(figure)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A column that is killed and resumed, or run on several ranks, leaves the same files."""
 import contextlib
@@ -13,7 +12,7 @@ import h5py
 import numpy as np
 
 from column_support import ColumnTest, SCENES, history, settings
-from support import TIME_LIMIT, contents, main, wait_until
+from support import TIME_LIMIT, contents, wait_until
 
 
 class Resume(ColumnTest):
@@ -244,7 +243,3 @@ class MPIRanks(ColumnTest):
         self.assertEqual(result.stderr.count("error: "), 1)
         self.assertIn("not a folder", result.stderr)
         self.assertEqual(result.returncode, 2)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,15 +1,14 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Each number of a test's summary is of that run, in text, summary.json, report and figures, or is left out: scenes
 without a shear stage, with several, that ended at once, and contact laws without moments or friction."""
-import csv
 import html
 import json
 import re
 
 import numpy as np
 
-from support import AppTest, main, tiny_scene
+from report_support import page
+from support import AppTest, columns, tiny_scene
 
 CELL = 'domain = "periodic-cell"\npreparation_friction = "10 deg"'
 REST = '[[stage]]\nkind = "hold"\nbalance = 0.05\n'
@@ -25,13 +24,10 @@ class Summary(AppTest):
         result = self.run_app("element_test", self.write(f"{name}.toml", scene), "-o", name, *arguments)
         self.assert_done(result)
         self.text = (self.folder / name / "summary.txt").read_text(encoding="utf-8")
-        self.numbers = json.loads((self.folder / name / "summary.json").read_text(encoding="utf-8"))
+        self.numbers = self.summary_of(name)
         rows = [f"  {label:<25}{text}\n" for label, text in self.numbers["rows"]]
         self.assertEqual(self.text, "\ntiny\n" + "".join(rows))
-        with open(self.folder / name / "history.csv", newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        self.history = {cell.split(" ")[0]: np.array([float(row[cell]) for row in rows])
-                        for cell in (rows[0] if rows else ())}
+        self.history = columns(self.folder / name / "history.csv")
 
     def line(self, name):
         """What the summary says of a name, or None."""
@@ -103,7 +99,7 @@ class Summary(AppTest):
         loose = 'preparation_friction = "30 deg"'
         stages = ('[[stage]]\nkind = "undrained-monotonic"\nstrain = 1e-5\n'
                   '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.01\nliquefaction_ratio = 0.9\n')
-        self.leave("ratio", stages, "--set", "motion.strain_rate=10 1/s", specimen=loose)
+        self.leave("ratio", stages, "--no-figures", "--set", "motion.strain_rate=10 1/s", specimen=loose)
         event = self.numbers["liquefaction"]
         self.assertEqual(event["ratio"], 0.9)
         below = np.flatnonzero(self.history["p"] / self.numbers["p0"] < 0.9)
@@ -113,32 +109,27 @@ class Summary(AppTest):
         self.assert_close(event["IR_before"], self.history["IR"][before], 1e-8, "digits of the history")
         self.assertGreaterEqual(event["p_ratio_before"], 0.9)
         self.assertIsNone(self.line("cycles to liquefaction"), "it had none")
-        report = (self.folder / "ratio/report.html").read_text(encoding="utf-8")
+        report = page(self.folder / "ratio")
         self.assertIn("fell below 0.9 ", report)
         self.assertIn("in the row before ", report)
         for name in ("IR_before", "p_ratio_before"):  # as a version left it that did not have them
             del self.numbers["liquefaction"][name]
         (self.folder / "ratio/summary.json").write_text(json.dumps(self.numbers), encoding="utf-8")
-        self.assert_done(self.run_app("isostat", "report", "ratio"))
-        report = (self.folder / "ratio/report.html").read_text(encoding="utf-8")
+        report = page(self.folder / "ratio")
         self.assertIn("fell below 0.9 ", report)
         self.assertNotIn("in the row before ", report)
 
     def test_results_of_a_version_without_rows_are_reported(self):
         """Their text as it is, and without what that version did not keep as numbers; without the text the numbers."""
-        self.leave("old", SHEAR, "--set", "motion.strain_rate=2 1/s")
+        self.leave("old", SHEAR, "--no-figures", "--set", "motion.strain_rate=2 1/s")
         for name in ("rows", "strain_rate", "inertial_number", "max_indicator"):
             del self.numbers[name]
         (self.folder / "old/summary.json").write_text(json.dumps(self.numbers), encoding="utf-8")
-        result = self.run_app("isostat", "report", "old")
-        self.assert_done(result)
-        self.assertNotIn("not written", result.stderr)
-        report = html.unescape((self.folder / "old/report.html").read_text(encoding="utf-8"))
+        report = html.unescape(page(self.folder / "old"))
         self.assertIn(self.text.strip() + "</pre>", report)
         self.assertIn("fixed at 2 1/s, not controlled.", report)
         (self.folder / "old/summary.txt").unlink()
-        self.assert_done(self.run_app("isostat", "report", "old"))
-        report = (self.folder / "old/report.html").read_text(encoding="utf-8")
+        report = page(self.folder / "old")
         self.assertIn(f'<th scope="row">grains</th><td>{self.numbers["grains"]}</td>', report)
 
     def test_a_contact_counts_as_yielding_within_the_margin(self):
@@ -165,7 +156,3 @@ class Summary(AppTest):
             self.assert_close(h["IR_eq2"], (6 - 2 * slide - 2 * roll) * h["Z"] / 12, 1e-8, "digits of the history")
             self.assertEqual("Eq. 2: " in self.line("at the end"), constraints < 6)
             self.assert_at_the_end()
-
-
-if __name__ == "__main__":
-    main()

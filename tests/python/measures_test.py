@@ -1,7 +1,5 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures of a packing from Python: they agree with each other and have a unit each."""
-import unittest
 
 import numpy as np
 
@@ -43,7 +41,3 @@ class MeasuresTest(ToleranceTest):
 
     def test_every_measure_has_its_unit(self):
         self.assertEqual(set(isostat.measure_units()), set(self.measures))
-
-
-if __name__ == "__main__":
-    unittest.main()

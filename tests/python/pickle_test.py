@@ -1,17 +1,13 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Packings, runs, results and errors come back from other processes as they were."""
 import concurrent.futures
 import copy
 import multiprocessing
 import pickle
-import sys
-import unittest
-import unittest.mock
 
 import numpy as np
 
-from package import BINARIES, SMALL_SCENE, FolderTest, isostat
+from package import SMALL_SCENE, FolderTest, isostat
 
 SCENE = SMALL_SCENE + "max_steps = 300\n"
 
@@ -47,8 +43,7 @@ class PickleTest(FolderTest):
         self.assert_same_packing(again.snapshot, specimen.snapshot)
 
     def test_of_other_processes(self):
-        with (unittest.mock.patch.object(sys, "argv", [sys.argv[0], str(BINARIES)]),  # what they import looks at it
-              concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as processes):
+        with concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as processes:
             in_memory = processes.submit(run, 1, None, self.cache)
             in_folder = processes.submit(run, 1, self.folder / "results", self.cache)
             wrong = processes.submit(refused, None)
@@ -61,7 +56,3 @@ class PickleTest(FolderTest):
                 self.assertEqual(list(other.history), list(self.done.history))
                 self.assertEqual(other.history.units, self.done.history.units)
         self.assertEqual(isostat.read(self.folder / "results").scene.title, "small")
-
-
-if __name__ == "__main__":
-    unittest.main()

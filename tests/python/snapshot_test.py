@@ -1,10 +1,8 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Packings as arrays: views that keep their owner, the right numbers, files there and back."""
 import gc
 import pathlib
 import tempfile
-import unittest
 import warnings
 
 import numpy as np
@@ -115,10 +113,8 @@ class SnapshotTest(ToleranceTest):
 
     def test_wrong_spheres_are_refused(self):
         make = isostat.Snapshot.from_spheres
-        for arguments, words in (((CENTRES, [R, R]), "as many as centres"), ((CENTRES, [R, R, -R]), "sphere 2"),
-                                 ((CENTRES[:, :2], [R, R, R]), r"shape \(n, 3\)")):
-            with self.subTest(words), self.assertRaisesRegex(isostat.InputError, words):
-                make(*arguments, box=BOX)
+        with self.assertRaisesRegex(isostat.InputError, "sphere 2"):
+            make(CENTRES, [R, R, -R], box=BOX)
         for bad in ({"density": 0}, {"density": float("nan")}):
             with self.subTest(bad), self.assertRaisesRegex(isostat.InputError, "density"):
                 make(CENTRES, [R] * 3, box=BOX, **bad)
@@ -135,7 +131,3 @@ class SnapshotTest(ToleranceTest):
             make(CENTRES, [R, R, R])
         with self.assertRaisesRegex(isostat.InputError, "lower < upper"):
             make(CENTRES, [R, R, R], box=BOX[::-1])
-
-
-if __name__ == "__main__":
-    unittest.main()

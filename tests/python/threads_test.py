@@ -1,12 +1,11 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Several threads, and several processes, call the package at once: no crash, and the bits of one that is alone.
 
 REPEATS in the environment makes it longer: REPEATS=20 in place of 3, with 2, 3 and 4 threads in place of 3."""
+import multiprocessing
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import threading
 import unittest
@@ -101,9 +100,10 @@ def at_once(names, repeats):
 class ThreadsTest(unittest.TestCase):
     def call(self, names):
         """In a process of its own: a crash is its exit code."""
-        done = subprocess.run([sys.executable, __file__, BINARIES, "--at-once", *names], capture_output=True, text=True,
-                              check=False)
-        self.assertEqual(done.returncode, 0, f"{names}: {done.stderr[-2000:]}")
+        process = multiprocessing.get_context("spawn").Process(target=at_once, args=(names, REPEATS))
+        process.start()
+        process.join()
+        self.assertEqual(process.exitcode, 0, names)
 
     def test_threads_of_one_kind(self):
         for name in TASKS:
@@ -127,10 +127,3 @@ class ThreadsTest(unittest.TestCase):
                 first, *others = [(folder / f"run{k}/history.csv").read_bytes() for k in range(8)]
                 self.assertTrue(all(other == first for other in others))
                 self.assertEqual(list(folder.rglob("*.tmp")), [])
-
-
-if __name__ == "__main__":
-    if "--at-once" in sys.argv:
-        at_once(sys.argv[sys.argv.index("--at-once") + 1:], REPEATS)
-    else:
-        unittest.main()
