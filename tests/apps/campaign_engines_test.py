@@ -14,7 +14,7 @@ import unittest
 from resistance_test import SHEAR
 from support import BIN, TIME_LIMIT, AppTest, children, table, wait_until
 
-RATIOS = ("--ratios", "0.12,0.16,0.25", "-n", "2", "--cycles", "15", "--no-figures")
+RATIOS = ("--ratios", "0.16,0.25", "-n", "2", "--cycles", "15", "--no-figures")
 
 
 def all_children(process):

@@ -14,7 +14,7 @@ from grain_column_test import GRAINS as COLUMN, SPECIMENS
 from support import columns, contents
 
 GRAINS = re.sub(r"((snapshot|path)_)?depths = .*\n|(snapshot|paraview)_interval.*\n", "", COLUMN).replace(
-    "cells = 5", "cells = 3").replace("5e-4", "1e-3").replace('"0.3 s"', '"0.25 s"')
+    "cells = 5", "cells = 3").replace('"0.3 s"', '"0.25 s"')
 SAND = """title = "sand"
 water.drainage = "undrained"
 output.history_interval = "0.005 s"

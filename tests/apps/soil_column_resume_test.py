@@ -150,7 +150,7 @@ class MPIRanks(ColumnTest):
 
     def test_first_rank_cannot_write_its_last_rows(self):
         for last_file, more in (
-                ("profiles.h5", settings(analysis__duration="600 s", output__history_interval="10 s")),
+                ("profiles.h5", settings(analysis__duration="200 s", output__history_interval="10 s")),
                 ("history.h5", self.DISTRIBUTED + settings(analysis__duration="10 s", output__history_interval="1 s"))):
             with self.subTest(more), self.started(self.ranks(2, *more)) as process:
                 wait_until((self.folder / "out" / last_file).exists, last_file, process)

@@ -21,7 +21,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(sys.argv[1]).resolve()
 
 os.environ.pop("PYTHONUNBUFFERED", None)  # as in the shell of a user
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1")
+os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_pml="ob1",
+                  OMPI_MCA_ess_singleton_isolated="1", OPENBLAS_NUM_THREADS="1")  # as in tests/CMakeLists.txt
 DISK, MEMORY = tempfile.gettempdir(), "/dev/shm"  # what is in memory may not be executable
 if os.path.ismount(MEMORY) and shutil.disk_usage(MEMORY).free > 2e9:
     tempfile.tempdir = os.environ["TMPDIR"] = MEMORY  # a short run syncs 50 times, and a disk takes 4 ms each time

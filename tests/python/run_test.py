@@ -20,8 +20,8 @@ domain = "periodic-cell"
 preparation_friction = "12 deg"
 [[stage]]
 kind = "undrained-cyclic"
-deviator_amplitude = "40 kPa"
-until = { cycles = 2, reversals_after_liquefaction = 1 }
+deviator_amplitude = "10 kPa"
+until.cycles = 6
 """
 DRAINED = '''[[stage]]
 kind = "drained"
@@ -116,7 +116,7 @@ class RunTest(FolderTest):
         self.assertGreater(later.summary["reversals"], 2)
         self.assertEqual(later.summary["ended"], whole.summary["ended"])
         np.testing.assert_array_equal(later.snapshot.positions, whole.snapshot.positions)
-        with self.assertRaisesRegex(isostat.InputError, "cycles = 1, but the checkpoint has 2: an end can be put off"):
+        with self.assertRaisesRegex(isostat.InputError, "cycles = 1, but the checkpoint has 6: an end can be put off"):
             self.run_scene_of(short, self.folder / "longer", resume=True)
 
     def test_callbacks_see_the_packing(self):
@@ -216,7 +216,7 @@ times = 2
         results = isostat.read(folder)
         self.assertEqual(results.scene.to_dict()["grading"].get("grains"), None)
         self.assertNotIn("pressure", tomllib.loads((folder / "scene.toml").read_text())["specimen"])
-        self.assertRegex(results.provenance, "seed +1\nspecimen +300 grains, d50 0.[0-9]+ mm, e 0.[0-9]+, p' 200 kPa")
+        self.assertRegex(results.provenance, "seed +1\nspecimen +300 grains, d50 0.[0-9]+ mm, e 0.[0-9]+, p' (199[.]|200)[.0-9]* kPa")
         self.assert_close(results.history["p"][0], 200e3, 0.01, "the servo stops within 0.3 %")
         self.assert_close(results.history["unbalanced"][0], self.specimen.numbers["unbalanced_force"], 0.5,
                           "velocities are those of a step further")
