@@ -21,7 +21,7 @@ from figures.column_grains import first
 from figures.column_soil import outline
 from figures.common import plt, use_style
 from figures.soil_column import DRAWING
-from legends_test import covered
+from element_figures_test import covered
 from support import ROOT, TIME_LIMIT, ToleranceTest
 
 PERIODS = np.array([0.02, 0.05, 0.2, 0.5, 1, 3, 10])

@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""report.html of a run: what it holds, that it is one file, how it looks in a browser, what its failure costs."""
+"""report.html of a run: what it holds, that it is one file, how it looks in a browser, what its failure costs, and what
+is said of damaged files."""
 import html
 import importlib
+import json
 import pathlib
 import re
 import shutil
 import subprocess
+import tomllib
 import unittest
 
 from figures import element_test, soil_column
 from figures.__main__ import PROGRAMS
 from figures.common import plt
+from figures.files import Damaged, read_parsed
 from report import narrow
-from report.folder import find_results
+from report.folder import NoResults, find_results
 from report.run import calls
 from report_support import SCENES, ReportTest, page
-from support import BIN, CYCLIC, TIME_LIMIT, contents, tiny_scene
+from support import BIN, CYCLIC, TIME_LIMIT, AppTest, contents, tiny_scene
 
 BROWSER = shutil.which("chromium")
 REST = '[[stage]]\nkind = "hold"\nbalance = 0.05\n'  # three figures in place of eight
@@ -245,6 +249,19 @@ class Reports(ReportTest):
             self.assertEqual(result.returncode, 1, result.stderr)
             self.assertIn("no module matplotlib: install it, apt-get install python3-matplotlib", result.stderr)
 
+    def test_damaged_files_are_named(self):
+        shutil.copytree(self.runs / "rest", self.folder / "cut")
+        for name in ("scene.toml", "summary.json"):
+            path = self.folder / "cut" / name
+            whole = path.read_text(encoding="utf-8")
+            path.write_text("\n".join([*whole.splitlines()[:4], '"half = ']), encoding="utf-8")
+            with self.assertRaisesRegex(NoResults, rf"cut/{name}:5: is damaged \(.*Restore it.*--resume"):
+                find_results(self.folder / "cut")
+            if name == "scene.toml":
+                path.write_text(whole, encoding="utf-8")
+        for arguments in (("report", "cut"), ("compare", self.runs / "rest", "cut")):
+            self.assert_refused(self.run_app("isostat", *arguments), "cut/summary.json:5: is damaged (")
+
     @unittest.skipUnless(BROWSER, "chromium is not installed")
     def test_in_a_browser(self):
         """Nothing is wider than the page, and no figure is cut; the selected one answers to wheel and keys, and comes
@@ -270,7 +287,31 @@ class Reports(ReportTest):
             self.assertGreater(image.stat().st_size, 20000)
 
 
-@unittest.skipUnless(BIN and (BIN / "soil_column").exists(), "built without the continuum half")
+class DamagedTables(AppTest):
+    def said(self, text, parse=json.loads):
+        path = self.folder / "file"
+        path.write_bytes(text)
+        with self.assertRaises(Damaged) as caught:
+            read_parsed(path, parse)
+        return str(caught.exception).removeprefix(str(path))
+
+    def test_place_and_reason(self):
+        cut = b'{\n  "title": "one",\n  "grains": 20'
+        self.assertRegex(self.said(cut), r"^:3: is damaged \(Expecting ',' delimiter\)\. Restore it")
+        self.assertRegex(self.said(b""), r"^:1: is damaged \(it is empty\)\.")
+        self.assertRegex(self.said(b'{\n"title": "\xff"}'), r"^:2: is damaged \(it holds bytes that are no text\)")
+        self.assertRegex(self.said(b"[1, 2]"), r"^:1: is damaged \(it holds no table")
+        self.assertRegex(self.said(b"[grading]\ngrains = \n", tomllib.loads), r"^:2: is damaged \(Invalid value\)\.")
+        self.assertRegex(self.said(b'[grading]\ngrains = "2', tomllib.loads), r"^:2: is damaged \(Unterminated string")
+
+    def test_whole(self):
+        path = self.write("file", '{"grains": 200}')
+        self.assertEqual(read_parsed(path), {"grains": 200})
+        with self.assertRaises(FileNotFoundError):
+            read_parsed(self.folder / "nowhere")
+
+
+@unittest.skipUnless((BIN / "soil_column").exists(), "built without the continuum half")
 class OtherPrograms(ReportTest):
     def test_consolidation(self):
         self.make("soil_column", "column", SCENES / "column/terzaghi.toml", "--set", "analysis.steps=40")
