@@ -17,6 +17,8 @@ import unittest
 import h5py
 import numpy as np
 
+if sys.argv[0].endswith("_test.py"):
+    sys.exit("a test in Python is run by tests/run.py BIN TEST")
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(sys.argv[1]).resolve()
 
