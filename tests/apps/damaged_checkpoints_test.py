@@ -11,7 +11,7 @@ import numpy as np
 
 from biaxial_test import FRICTION
 from failing_runs import COLUMN, EVERY, SAVED
-from support import CYCLIC, AppTest, contents, results, tiny_scene
+from support import CYCLIC, AppTest, contents, tiny_scene
 
 QUIET = ("-q", "--no-figures")
 FOR_OTHERS = ("state/grains/mass", "state/grains/inertia")  # their inverses stand beside velocities
@@ -167,7 +167,7 @@ class DamagedCheckpoints(AppTest):
                                         "nan in its velocity")
         self.assertIn("goes on from the checkpoint before", result.stderr)
         self.assert_done(self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "whole"))
-        self.assertEqual(results(parts), results(self.folder / "whole"))
+        self.assert_same_results("parts", "whole")
 
     def test_soil_column(self):
         self.damage_each("soil_column", self.write("column.toml", COLUMN.replace("0.6 s", "6 s")))
@@ -208,7 +208,7 @@ class DamagedCheckpoints(AppTest):
                 result = self.run_app(program, *arguments, "-o", "parts", "--resume")
                 self.assert_done(result)
                 self.assertRegex(result.stderr, "last.h5: damaged: .* its check sum is lost")
-                self.assertEqual(results(parts), results(self.folder / "whole"))
+                self.assert_same_results("parts", "whole")
             shutil.rmtree(self.folder / "parts")
             shutil.rmtree(self.folder / "whole")
 

@@ -10,7 +10,7 @@ import subprocess
 
 from biaxial_test import FRICTION
 from failing_runs import COLUMN, SAVED
-from support import ATTEMPTS, CYCLIC, TIME_LIMIT, AppTest, results, tiny_scene, wait_until
+from support import ATTEMPTS, CYCLIC, TIME_LIMIT, AppTest, tiny_scene, wait_until
 
 
 def is_stopped(process):
@@ -60,12 +60,12 @@ class SharedFolder(AppTest):
                 self.assert_refused(refused, f"{out}: another program is at work in it", "--output")
             first.send_signal(signal.SIGCONT)
             self.assertEqual(first.wait(timeout=TIME_LIMIT), 0)
-        self.assertEqual(results(self.folder / out), results(self.folder / whole))
+        self.assert_same_results(out, whole)
         (self.folder / out).rename(self.folder / f"{program}_done")
         with self.halted(command, out) as killed:
             killed.kill()
         self.assert_done(self.run_app(program, scene, *SAVED, "-o", out, "-q", "--no-figures", "--resume"))
-        self.assertEqual(results(self.folder / out), results(self.folder / whole))
+        self.assert_same_results(out, whole)
 
     def test_a_folder_that_vanishes(self):
         for program, scene in self.scenes.items():
