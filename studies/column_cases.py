@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Columns that are solved by Isostat and by others, and how far apart two motions are.
 
-For the study column_others, tests/apps/column_others_test.py and tests/apps/column_published_test.py.
+For the study column_others and tests/apps/column_others_test.py.
 """
 import pathlib
 

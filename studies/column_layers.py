@@ -5,7 +5,7 @@ In layer m, z downwards from its top, u = A exp(i k z) + B exp(-i k z) with k = 
 and G* du/dz are continuous and the surface is free, so A and B follow from the surface down (Thomson 1950, Haskell
 1953; Kramer 1996, 7.2.1.4). G* = G (1 + 2 i D).
 
-tested: tests/apps/column_others_test.py, tests/apps/column_published_test.py
+tested: tests/apps/column_others_test.py
 """
 import numpy as np
 

@@ -1,19 +1,16 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Isostat as a user has it who installed it: the programs find what they need next to themselves, and the examples are
 built from outside by find_package(isostat) and show what their first lines say."""
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 
 import numpy as np
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent / "apps")]
-import support  # noqa: E402  (the path comes first)
+import support
 
-EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
+EXAMPLES = support.ROOT / "examples"
 
 
 def run(*command, cwd=None):
@@ -27,7 +24,7 @@ def run(*command, cwd=None):
 class Installed(support.ToleranceTest):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="isostat_installed_"))
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="isostat_installed_", dir=support.DISK))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         cls.prefix, cls.work = cls.folder / "prefix", cls.folder / "work"
         cls.work.mkdir()
@@ -124,7 +121,3 @@ class Installed(support.ToleranceTest):
         output = run(self.build / "own_material", cwd=self.work)
         ratio = float(output.split()[-1])
         self.assertGreater(abs(ratio / 5 - 1), 0.01, output)  # a linear material gives 5 to round-off
-
-
-if __name__ == "__main__":
-    support.main()

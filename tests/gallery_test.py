@@ -1,17 +1,13 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The scripts of the gallery run at small sizes, draw their figures, and have their place on its page."""
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import unittest
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent / "apps")]
-import support  # noqa: E402  (the path comes first)
+from support import BIN, ROOT, TIME_LIMIT
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
 SCRIPTS = sorted((ROOT / "examples/python").glob("*.py"))
 LARGEST = 150_000  # bytes of a figure in the repository
 
@@ -19,14 +15,14 @@ LARGEST = 150_000  # bytes of a figure in the repository
 class Gallery(unittest.TestCase):
     def test_scripts_draw(self):
         self.assertEqual(len(SCRIPTS), 6)
-        environment = {**os.environ, "PYTHONPATH": str(support.BIN.parent / "python"), "OMP_NUM_THREADS": "1"}
+        environment = {**os.environ, "PYTHONPATH": str(BIN.parent / "python"), "OMP_NUM_THREADS": "1"}
         with tempfile.TemporaryDirectory() as folder:
             for script in SCRIPTS:
                 with self.subTest(script.name):
-                    if script.name == "soil_column.py" and not (support.BIN / "soil_column").exists():
+                    if script.name == "soil_column.py" and not (BIN / "soil_column").exists():
                         continue
                     done = subprocess.run(["/usr/bin/python3", script, "--small", "--output", folder], env=environment,
-                                          capture_output=True, text=True, check=False, timeout=support.TIME_LIMIT)
+                                          capture_output=True, text=True, check=False, timeout=TIME_LIMIT)
                     self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                     self.assertGreater((pathlib.Path(folder) / f"{script.stem}.png").stat().st_size, 10_000)
 
@@ -39,7 +35,3 @@ class Gallery(unittest.TestCase):
                 self.assertIn(f"figures/gallery/{script.stem}.png", page)
                 figure = ROOT / f"docs/figures/gallery/{script.stem}.png"
                 self.assertLess(figure.stat().st_size, LARGEST)
-
-
-if __name__ == "__main__":
-    unittest.main()

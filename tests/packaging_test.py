@@ -1,17 +1,14 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Recipes of packages against the build: each names what CMake looks for, and asks for nothing that does not exist."""
 import ast
-import pathlib
 import re
 import subprocess
-import sys
 import tomllib
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+from support import BIN, ROOT
+
 PACKAGING = ROOT / "packaging"
-BIN = pathlib.Path(sys.argv[1]).resolve()
 # what CMake looks for in base, dem, fem, coupling, apps: names in Spack and conda-forge (none: not part of that recipe)
 NAMES = {
     "Boost": ("boost", "libboost-headers"), "CLI11": ("cli11", "cli11"), "deal.II": ("dealii", None),
@@ -95,7 +92,3 @@ class Recipes(unittest.TestCase):
                     f"COMP_CWORD={len(words) - 1}; _isostat {words[0]}; echo ${{COMPREPLY[@]}}")
             done = subprocess.run(["bash", "-c", call], capture_output=True, text=True, check=False)
             self.assertIn(expected, done.stdout.split(), done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

@@ -1,12 +1,10 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Every key that a scene may be refused for, beyond its own range, has the limit in its row of the scene reference."""
-import pathlib
 import re
-import sys
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+from support import ROOT
+
 SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.cpp", "apps/deposit/plate.cpp",
            "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/biaxial/scene.cpp",
            "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp", "fem/material/mohr_coulomb_scene.cpp",
@@ -87,7 +85,3 @@ class Limits(unittest.TestCase):
                 if name not in ("", "{}"):  # else it is made of other words
                     self.assertIn(name, listed, f"{source} refuses {key}: state the limit in the text of the key, and "
                                                 "its words here")
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tested: tests/apps/drained_report_test.py
+// tested: tests/apps/summary_test.py
 #pragma once
 #include "apps/common/run_history.hpp"
 #include "apps/common/summary.hpp"

@@ -65,7 +65,7 @@ std::string first_difference(const std::string &one, const std::string &other);
 void check_same_scene(const std::filesystem::path &folder, const std::string &checkpoint, const std::string &scene);
 
 /// Says on stderr if a checkpoint comes from another instruction set: the run continues, but not to the same bits.
-/// tested: tests/apps/instruction_sets_test.py
+/// tested: tests/apps/kill_resume_test.py
 void note_instruction_set(const std::string &made_with);
 
 /// Whether a run that --resume asks for has finished: its summaries are there.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the summary of a test says of its stages: the response to cycles, lost control, ends, repeats.
-// tested: tests/apps/early_end_test.py, tests/apps/control_test.py, tests/apps/resistance_test.py
+// tested: tests/apps/summary_test.py, tests/apps/resistance_test.py
 #pragma once
 #include "apps/common/summary.hpp"
 #include "dem/scene/scene.hpp"

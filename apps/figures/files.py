@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables that a run has left as text, JSON or TOML. Needs nothing but Python: figures, reports and the module isostat
-read them here.   tested: tests/apps/damaged_files_test.py"""
+read them here.   tested: tests/apps/report_test.py"""
 import contextlib
 import itertools
 import json

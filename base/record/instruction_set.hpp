@@ -11,7 +11,7 @@ std::string instruction_set();
 /// Programs and the Python package take it from the environment, ISOSTAT_INSTRUCTION_SET, if it is set there.
 /// @pre no loop has run yet
 /// @throws InputError  this machine does not have it, or no loop was compiled for it: the names that there are
-/// tested: tests/apps/instruction_sets_test.py
+/// tested: tests/apps/kill_resume_test.py
 void use_instruction_set(const std::string &name);
 void use_instruction_set_of_environment();
 

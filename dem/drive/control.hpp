@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whether a stage that shears has what it is to keep in its hands: stresses on their targets, inertia small.
-// tested: tests/dem/drive/control_test.cpp, tests/apps/control_test.py
+// tested: tests/dem/drive/control_test.cpp, tests/apps/summary_test.py
 #pragma once
 #include "base/scene/fragment.hpp"
 #include "dem/drive/drive_state.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures of a snapshot.   tested: tests/python/measures_test.py
+// Measures of a snapshot.   tested: tests/python/snapshot_test.py
 #include "dem/measure/stiffness.hpp"
 #include "dem/measure/summary.hpp"
 #include "dem/measure/unbalanced.hpp"

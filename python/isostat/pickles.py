@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Packings as bytes, for pickle and copy: those of their HDF5 files.   tested: tests/python/pickle_test.py"""
+"""Packings as bytes, for pickle and copy: those of their HDF5 files.   tested: tests/python/threads_test.py"""
 import copyreg
 import pathlib
 import tempfile

@@ -1,11 +1,10 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """isostat animate: a frame for each stored moment of a column and of a test; what it cannot do, it says."""
 import h5py
 from PIL import Image
 
 import column_fixture as fixture
-from support import AppTest, main
+from support import AppTest
 
 
 class Animations(AppTest):
@@ -42,7 +41,3 @@ class Animations(AppTest):
             self.assertIn(said, result.stderr)
         (self.folder / "run/grains/d0.pvd").unlink()
         self.assertIn("run: has no snapshots. Run it with", self.animate("run").stderr)
-
-
-if __name__ == "__main__":
-    main()

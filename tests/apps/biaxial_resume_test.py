@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The program biaxial, stopped and started again: the same files, whatever stopped it."""
-import json
-import pathlib
 import shutil
 import signal
 
 from biaxial_test import CELL, FEW, GRAINS
 from column_support import SCENES, ColumnTest, settings
-from support import main, tiny_scene
+from support import tiny_scene
 
 SAVED = settings(output__checkpoint="1e-9 min")
 SOFTENING = SCENES.parent / "biaxial/mohr_coulomb.toml"
@@ -65,9 +62,5 @@ class Resume(ColumnTest):
         self.stop_when_saved(block, signal.SIGKILL, "-q", *options, program="biaxial")
         self.assertFalse((self.folder / "parts/summary.json").exists())
         self.goes_on(block, "--threads", "2", *options)
-        summary = json.loads(pathlib.Path(self.folder / "parts/summary.json").read_text(encoding="utf-8"))
+        summary = self.summary_of("parts")
         self.assertTrue(summary["complete"])
-
-
-if __name__ == "__main__":
-    main()

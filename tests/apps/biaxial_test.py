@@ -1,21 +1,12 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The program biaxial: an elastic block against its closed form, a weak element, a block of packings, refusals."""
-import json
-import os
-import pathlib
-import sys
 
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-from figures.biaxial import Block, band, band_shape, rate_maps, shear_maps  # noqa: E402  (the path comes first)
 from column_support import settings
-from support import AppTest, main, tiny_scene
-
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
-                  OMP_NUM_THREADS="1")
+from figures.biaxial import Block, band, band_shape, rate_maps, shear_maps
+from support import ROOT, AppTest, tiny_scene
 
 ELASTIC = """title = "elastic block"
 [mesh]
@@ -93,7 +84,7 @@ class Biaxial(AppTest):
         self.assertIn("soil.dilatancy_angle = 40 deg; must not exceed friction_angle", refused.stderr)
 
     def test_a_band_forms_where_strength_falls(self):
-        scene = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/biaxial/softening.toml"
+        scene = ROOT / "apps/scenes/biaxial/softening.toml"
         small = ("--set", "mesh.cells_across=4", "--set", "mesh.cells_up=8", "--set", "weak.row=3")
         self.assert_done(self.run_app("biaxial", scene, "-o", "run", "--no-figures", "-q", *small, "--set",
                                       "test.axial_strain=0.02", "--set", "test.steps=20"))
@@ -216,7 +207,7 @@ class Biaxial(AppTest):
         for strain, large in ((0.05, False), (0.24, True)):
             result = self.run_block(ELASTIC.format(degree=1), "--set", f"test.axial_strain={strain}")
             self.assert_done(result)
-            summary = json.loads((self.folder / "run/summary.json").read_text(encoding="utf-8"))
+            summary = self.summary_of("run")
             self.assert_close(summary["max_strain"], strain, 1e-9, "a direct solution of a uniform block")
             self.assert_below(summary["max_rotation_deg"], 1e-9, "round-off: a uniform block does not rotate")
             text = (self.folder / "run/summary.txt").read_text(encoding="utf-8")
@@ -240,7 +231,7 @@ class Biaxial(AppTest):
         self.assert_below(rows["residual"].max(), 0.01, "tolerance of the scene")
         self.assertGreater(maps["redundancy"].min(), 1)
         self.assertGreater(len(np.unique(maps["void_ratio"][0])), 1)  # two realisations
-        summary = json.loads((self.folder / "run/summary.json").read_text(encoding="utf-8"))
+        summary = self.summary_of("run")
         self.assertTrue(summary["complete"])
         self.assertEqual(summary["points"], 8)
 
@@ -274,7 +265,7 @@ class Biaxial(AppTest):
         self.assert_refused(self.run_block(ELASTIC.format(degree=1), *relaxed[:2]), "nonlocal.length", "relaxation")
 
     def test_band_with_a_length_is_that_of_every_mesh(self):
-        scene = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/biaxial/mohr_coulomb.toml"
+        scene = ROOT / "apps/scenes/biaxial/mohr_coulomb.toml"
         stress = []
         for cells in (4, 8):
             keys = (f"mesh.cells_across={cells}", f"mesh.cells_up={2 * cells}", f"weak.cells={cells // 4}",
@@ -292,7 +283,7 @@ class Biaxial(AppTest):
         again = self.run_app("biaxial", self.write("again.toml", shown.stdout), "--validate")
         self.assertEqual(again.stdout.replace("again", "block"), shown.stdout)
         self.assert_done(self.run_app("biaxial", "--print-defaults"))
-        manual = pathlib.Path(__file__).resolve().parents[2] / "docs/biaxial_scene_reference.md"
+        manual = ROOT / "docs/biaxial_scene_reference.md"
         self.assertEqual(self.run_app("biaxial", "--print-manual").stdout, manual.read_text(encoding="utf-8"))
         self.assert_refused(self.run_block(ELASTIC.format(degree=3)), "mesh.degree")
         self.assert_refused(self.run_block(FRICTION, "--set", "newton.max_iterations=0"), "newton.max_iterations")
@@ -302,7 +293,3 @@ class Biaxial(AppTest):
         for key in ("in_situ", "min_steps", "realisations", "fabric_rate"):
             self.assertIn(key + " = ", shown)
         self.assert_refused(self.run_block(ELASTIC.format(degree=1), "--set", "weak.cells=4"), "weak.column")
-
-
-if __name__ == "__main__":
-    main()

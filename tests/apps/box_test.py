@@ -1,8 +1,6 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column with a box of soil between walls whose surface is inclined: what it leaves, on how many ranks and after
 which restarts."""
-import json
 import re
 import shutil
 import signal
@@ -11,7 +9,6 @@ import h5py
 import numpy as np
 
 from column_support import ColumnTest, settings
-from support import main
 
 BOX = """title = "slope in a box"
 [mesh]
@@ -46,7 +43,9 @@ depths = ["0.5 m", "2 m"]
 profile_interval = "0.1 s"
 paraview_interval = "1 s"
 """
-DISTRIBUTED = settings(mesh__distributed="true", analysis__duration="0.2 s")
+SHARED = re.sub(r"(profile|paraview)_interval.*\n", "", BOX)  # what a mesh on several ranks can leave
+DISTRIBUTED = settings(mesh__distributed="true")
+MOTION = tuple(f"surface_motion.{key}" for key in ("along_x", "largest", "settlement", "heave"))
 
 
 class Box(ColumnTest):
@@ -102,24 +101,15 @@ class Box(ColumnTest):
                          "walls, fifteen depths away, and liquefied sand, which magnifies what little comes from there")
 
     def test_ranks_are_alike_to_the_bit(self):
-        for n in (1, 3):
-            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *settings(analysis__duration="0.2 s")))
-            self.assert_same_files("on1", f"on{n}")
+        self.check_ranks(*settings(analysis__duration="0.2 s"))
 
     def test_one_mesh_over_ranks(self):
-        found = {}
-        scene = self.write("shared.toml", re.sub(r"(profile|paraview)_interval.*\n", "", BOX))
-        for n in (1, 4):
-            self.assert_done(self.run_on_ranks(n, scene, "-o", f"on{n}", *DISTRIBUTED))
-            found[n] = json.loads((self.folder / f"on{n}/summary.json").read_text(encoding="utf-8"))
-            for key in ("along_x", "largest", "settlement", "heave"):
-                one = found[1]["surface_motion"][key]
-                self.assert_near(found[n]["surface_motion"][key], one, 1e-7 * abs(one),
-                                 f"round-off of sums over the ranks ({key})")
+        self.scene = self.write("shared.toml", SHARED)
+        self.check_shared_mesh((4,), MOTION, 1e-7, *DISTRIBUTED, *settings(analysis__duration="0.2 s"))
 
     def test_a_shared_mesh_goes_on_on_other_ranks(self):
-        scene = self.write("shared.toml", re.sub(r"(profile|paraview)_interval.*\n", "", BOX))
-        options = settings(mesh__distributed="true", analysis__duration="0.4 s", output__checkpoint="1e-9 min")
+        scene = self.write("shared.toml", SHARED)
+        options = DISTRIBUTED + settings(analysis__duration="0.4 s", output__checkpoint="1e-9 min")
         self.assert_done(self.run_column(scene, "-o", "whole", *options))
         last = self.folder / "parts/checkpoint/last.h5"
         for n, then in ((1, 2), (3, 1)):
@@ -128,11 +118,7 @@ class Box(ColumnTest):
                                         self.command_on_ranks(n, scene, "-o", "parts", *options))
             self.assertEqual(code, 130, said)
             self.assert_done(self.run_on_ranks(then, scene, "-o", "parts", "--resume", *options))
-            one, other = (json.loads((self.folder / name / "summary.json").read_text(encoding="utf-8"))
-                          for name in ("whole", "parts"))
-            for key in ("along_x", "largest", "settlement", "heave"):
-                self.assert_near(other["surface_motion"][key], one["surface_motion"][key],
-                                 1e-7 * abs(one["surface_motion"][key]), f"round-off of sums over the ranks ({key})")
+            self.check_numbers("whole", "parts", MOTION, 1e-7)
 
     def check_stress_in_situ(self):
         """That of the theory."""
@@ -165,12 +151,4 @@ class Box(ColumnTest):
         self.assertIn("the stable step of the stiffest element", result.stderr)
 
     def test_goes_on_where_it_was_stopped(self):
-        options = settings(output__checkpoint="1e-9 min")
-        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
-        self.stop_when_saved(self.scene, signal.SIGKILL, *options)
-        self.assert_done(self.run_on_ranks(2, self.scene, "-o", "parts", "--resume", *options))
-        self.assert_same_files("whole", "parts")
-
-
-if __name__ == "__main__":
-    main()
+        self.check_restart(signal.SIGKILL, ranks=2)

@@ -3,13 +3,14 @@
 consolidation by the eigenvectors of finite differences, and a made-up liquefaction, with grains if requested. For tests
 of the figures."""
 import json
-import pathlib
 import re
 
 import h5py
 import numpy as np
 
-SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes"
+from support import ROOT
+
+SCENES = ROOT / "apps/scenes"
 HEIGHT, VELOCITY, DENSITY = 20.0, 200.0, 1900.0
 ROCK = {"density": 2300.0, "velocity": 800.0}
 UNITS = {"time": "s", "step": "-", "settlement": "m", "max_ru": "-", "max_ru_depth": "m", "min_p_ratio": "-"}

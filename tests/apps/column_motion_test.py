@@ -1,27 +1,20 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What soil_column reports of the motion of a surface that rings: rows, spectra, shares, depths, against every step."""
-import json
-import pathlib
-import sys
 
 import h5py
 import numpy as np
 
 from column_support import SCENES, ColumnTest, history, settings
-from support import main
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-from figures.column_analysis import response_spectrum  # noqa: E402  (the path comes first)
-from figures.column_results import Column  # noqa: E402
-from figures.common import read_history  # noqa: E402
+from figures.column_analysis import response_spectrum
+from figures.column_results import Column
+from figures.common import read_history
 
 
 class SurfaceMotion(ColumnTest):
     def run_scene(self, name, *options):
         self.assert_done(self.run_column(SCENES / "recorded_motion.toml", "-o", name, "--quiet", *options))
         folder = self.folder / name
-        return json.loads((folder / "summary.json").read_text(encoding="utf-8")), history(folder), folder
+        return self.summary_of(name), history(folder), folder
 
     def test_rows_and_spectra_are_those_of_every_step(self):
         """Rows every 10 ms against those of every step: no ringing, no aliases, spectra of every step."""
@@ -122,7 +115,3 @@ history_interval = "0.005 s"
         _, summary = self.run_motions(("x", self.record("drift.txt", 'baseline = "quadratic"')), duration="4.1 s",
                                       name="level")
         self.assertEqual(summary["warnings"], [])
-
-
-if __name__ == "__main__":
-    main()

@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of soil_column share: a small scene, running the program, comparing what it leaves behind."""
-import json
 import os
-import pathlib
-import sys
 
 import h5py
 import numpy as np
 
-from support import AppTest, contents
+from support import ROOT, AppTest
 
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OPENBLAS_NUM_THREADS="1",
-                  OMP_NUM_THREADS="1")
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+os.environ["OMP_NUM_THREADS"] = "1"
 SCENES = ROOT / "apps/scenes/column"
-sys.path.append(str(ROOT))  # for studies
 
 SOIL = """title = "sand over clay"
 [water]
@@ -49,7 +43,7 @@ duration = "1 s"
 [output]
 depths = ["1 m", "5 m"]
 """
-NO_FILES = {"provenance.txt", "times.json"}  # time of the run, number of ranks
+NO_FILES = ("provenance.txt", "times.json")  # time of the run, number of ranks
 
 
 def settings(**values):
@@ -79,8 +73,7 @@ class ColumnTest(AppTest):
         """History and summary of a scene."""
         result = self.run_column(self.write(f"{name}.toml", text), "-o", name, "--quiet")
         self.assert_done(result)
-        folder = self.folder / name
-        return history(folder), json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        return history(self.folder / name), self.summary_of(name)
 
     def command_on_ranks(self, n, *arguments):
         return ["mpirun", "--oversubscribe", "-n", str(n), *self.command("soil_column", *arguments, "--no-figures")]
@@ -94,18 +87,35 @@ class ColumnTest(AppTest):
         return self.stop_when(last.exists, last, how,
                               self.command(program, scene, "-o", "parts", "--no-figures", *options))[1]
 
-    def assert_same_files(self, one, other):
-        """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""
-        def names(folder):
-            return {n for n in contents(self.folder / folder) if n not in NO_FILES and not n.startswith("checkpoint")}
-        self.assert_same_contents(one, other, names)
+    def check_ranks(self, *options):
+        """The scene leaves the same files on one rank and on two."""
+        for n in (1, 2):
+            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options))
+        self.assert_same_files("on1", "on2")
 
-    def assert_same_contents(self, one, other, names):
-        """Of two folders the files `names(folder)`: HDF5 item by item, anything else byte by byte."""
-        self.assertEqual(names(one), names(other))
-        for name in names(one):
-            a, b = self.folder / one / name, self.folder / other / name
-            if name.endswith(".h5"):
-                self.assert_same_h5(a, b)
-            else:
-                self.assertEqual(a.read_bytes(), b.read_bytes(), name)
+    def check_shared_mesh(self, others, keys, tolerance, *options):
+        """These numbers of the summary are those of one rank on other numbers of ranks."""
+        for n in (1, *others):
+            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options))
+            self.check_numbers("on1", f"on{n}", keys, tolerance)
+
+    def check_numbers(self, one, other, keys, tolerance):
+        for key in keys:
+            expected, found = (self.summary_of(name) for name in (one, other))
+            for part in key.split("."):
+                expected, found = expected[part], found[part]
+            self.assert_close(found, expected, tolerance, f"round-off of sums over the ranks ({key})")
+
+    def check_restart(self, with_signal, *options, ranks=1):
+        """A run that is stopped once it has a checkpoint, and continues, leaves the files of one that was not.
+        Returns what it said"""
+        options += tuple(settings(output__checkpoint="1e-9 min"))
+        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
+        said = self.stop_when_saved(self.scene, with_signal, *options)
+        self.assert_done(self.run_on_ranks(ranks, self.scene, "-o", "parts", "--resume", *options))
+        self.assert_same_files("whole", "parts")
+        return said
+
+    def assert_same_files(self, one, other):
+        """Checkpoints come when the clock says."""
+        self.assert_same_folders(one, other, (*NO_FILES, "checkpoint"))

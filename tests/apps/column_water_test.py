@@ -1,13 +1,10 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The water of a column as a user sees it: expansion under a cap, air, three components of motion, viscosity."""
-import json
 
 import h5py
 import numpy as np
 
 from column_support import ColumnTest, SCENES, SOIL, history, settings
-from support import main
 
 CLAY = """title = "clay under a fill"
 [water]
@@ -79,8 +76,7 @@ class Water(ColumnTest):
     def run_scene(self, name, folder, *options):
         result = self.run_column(SCENES / f"{name}.toml", "-o", folder, "--quiet", *options)
         self.assert_done(result)
-        where = self.folder / folder
-        return history(where), json.loads((where / "summary.json").read_text(encoding="utf-8")), result.stdout
+        return history(self.folder / folder), self.summary_of(folder), result.stdout
 
     def test_sand_expands_under_a_cap_after_the_shaking(self):
         rows, summary, text = self.run_scene("silt_cap", "cap")
@@ -118,7 +114,3 @@ class Water(ColumnTest):
         self.assertIn("moves the column as a rigid body", summary["warnings"][-1])
         self.assertGreater(np.abs(rows["input_az"]).max(), 0.1)
         self.assertEqual(rows["surface_az"].tobytes(), rows["input_az"].tobytes())
-
-
-if __name__ == "__main__":
-    main()

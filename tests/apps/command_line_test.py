@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Mistakes on the command line of element_test: exit code, message with its place, and that nothing is lost."""
 import gzip
@@ -6,9 +5,9 @@ import os
 import pathlib
 import re
 import shutil
+import tempfile
 
-
-from support import AppTest, BIN, CYCLIC, contents, main, tiny_scene
+from support import BIN, CYCLIC, DISK, ROOT, AppTest, contents, tiny_scene
 
 
 class SceneMistakes(AppTest):
@@ -194,8 +193,7 @@ class SpecimenMistakes(AppTest):
 
 class Version(AppTest):
     def test_every_program_tells(self):
-        apps = pathlib.Path(__file__).resolve().parents[2] / "apps"
-        programs = [main.parent.name for main in apps.glob("*/main.cpp") if (BIN / main.parent.name).exists()]
+        programs = [path.parent.name for path in ROOT.glob("apps/*/main.cpp") if (BIN / path.parent.name).exists()]
         self.assertIn("element_test", programs)
         for program in [*programs, "isostat"]:
             result = self.run_app(program, "--version")
@@ -205,12 +203,20 @@ class Version(AppTest):
 
 class Bare(AppTest):
     def test_isostat_alone_lists_its_commands(self):
+        programs = [name for name in ("element_test", "soil_column") if (BIN / name).exists()]
         for words in ((), ("--help",)):
             result = self.run_app("isostat", *words)
             self.assert_done(result)
-            self.assertRegex(result.stdout, "\n  library .*\n(?s:.*)\n  element_test ")
+            for word in ("library", "calibrate", "compare", "report", *programs):
+                self.assertRegex(result.stdout, rf"(?m)^  {word} ")
         self.assert_refused(self.run_app("isostat", "librray"), "librray: unknown command of isostat. Did you mean "
                             "library?")
+
+    def test_isostat_calls_programs(self):
+        """With what follows, and their exit codes."""
+        self.assertEqual(self.run_app("isostat", "element_test", "--print-defaults").stdout,
+                         self.run_app("element_test", "--print-defaults").stdout)
+        self.assert_refused(self.run_app("isostat", "element_test", "nowhere.toml"), "nowhere.toml")
 
     def test_a_scene_of_too_long_a_name(self):
         for words in (("element_test",), ("isostat", "library"), ("isostat", "resistance", "--ratios", "0.2")):
@@ -219,15 +225,15 @@ class Bare(AppTest):
 
 class Copied(AppTest):
     def test_a_copied_program_says_what_it_misses(self):
+        there = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(dir=DISK)))
         for program in ("isostat", "element_test"):
-            (self.folder / "there").mkdir(exist_ok=True)
-            shutil.copy(BIN / program, self.folder / "there" / program)
-        self.assert_refused(self.run_app(self.folder / "there/isostat", "report", "x"), "python/isostat does not exist",
+            shutil.copy(BIN / program, there / program)
+        self.assert_refused(self.run_app(there / "isostat", "report", "x"), "python/isostat does not exist",
                             "copied", "built or installed")
         (self.folder / "link").symlink_to(BIN / "isostat")
         self.assert_done(self.run_app(self.folder / "link", "--version"))
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=600)))
-        result = self.run_app(self.folder / "there/element_test", scene, "-o", "out")
+        result = self.run_app(there / "element_test", scene, "-o", "out")
         self.assert_done(result)
         self.assertIn("figures were not drawn: ", result.stdout)
         self.assertIn("share/isostat/report does not exist", result.stdout)
@@ -235,10 +241,9 @@ class Copied(AppTest):
 
 class Readme(AppTest):
     def test_its_programs_are_built_by_the_demo(self):
-        root = pathlib.Path(__file__).resolve().parents[2]
-        demo = (root / "scripts/demo.sh").read_text(encoding="utf-8")
+        demo = (ROOT / "scripts/demo.sh").read_text(encoding="utf-8")
         built = re.search(r"--target ((?:.*\\\n)*.*)", demo)[1].split()
-        named = re.findall(r"build/release/bin/(\w+)", (root / "README.md").read_text(encoding="utf-8"))
+        named = re.findall(r"build/release/bin/(\w+)", (ROOT / "README.md").read_text(encoding="utf-8"))
         self.assertIn("soil_column", named)
         self.assertLessEqual(set(named), set(built))
 
@@ -363,7 +368,3 @@ class OutputFolder(AppTest):
         before = contents(self.folder / "out")
         self.assert_refused(self.run_test(self.scene, "-o", "out", "--resume", *every_256_steps), "last.h5")
         self.assertEqual(contents(self.folder / "out"), before)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,23 +1,23 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The comparison of two runs, and the program isostat that leads to it."""
+"""The comparison of two runs."""
+import contextlib
+import io
 import json
 import os
-import pathlib
 import re
 import shutil
-import sys
 
 import numpy as np
 from matplotlib.colors import to_rgb
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-from figures.common import Run, plt  # noqa: E402  (the path comes first)
-from report.compare import change, flat  # noqa: E402
-from report.compare_curves import LINES, caption_of_test, numbers_of_test, stress_curves  # noqa: E402
-from report.quantities import SHOWN, converted, is_number, named  # noqa: E402
-from report_support import SCENES, ReportTest  # noqa: E402
-from support import BIN, CYCLIC, AppTest, contents, main  # noqa: E402
+from figures.common import Run, plt
+from report import compare
+from report.compare import change, flat
+from report.compare_curves import LINES, caption_of_test, numbers_of_test, stress_curves
+from report.folder import NoResults
+from report.quantities import SHOWN, converted, is_number, named
+from report_support import SCENES, ReportTest
+from support import BIN, CYCLIC, columns, contents
 
 DRAINED = '[[stage]]\nkind = "drained"\nstrain = 0.001\nstrain_rate = "5 1/s"\n'
 SHEAR = '[[stage]]\nkind = "undrained-cyclic-simple-shear"\nstress_ratio = 0.2\nmax_steps = 500\n'
@@ -31,26 +31,29 @@ class Compare(ReportTest):
         cls.make_test("other", "--no-figures", "--set", "contact.friction=25 deg", stages=DRAINED)
         cls.make_test("cyclic", "--no-figures", stages=CYCLIC.format(steps=3000), output="energy = true")
 
-    def compare(self, *arguments):
-        return self.run_app("isostat", "compare", *arguments)
+    def compare(self, first, second, output="compare.html"):
+        """The page, made in this process."""
+        path = self.folder / output
+        with contextlib.redirect_stdout(io.StringIO()):
+            compare.leave(self.folder / first, self.folder / second, path)
+        return path.read_text(encoding="utf-8")
 
     def test_two_runs(self):
-        self.assert_done(self.compare(self.runs / "one", self.runs / "other"))
+        self.assert_done(self.run_app("isostat", "compare", self.runs / "one", self.runs / "other"))
         text = (self.folder / "compare.html").read_text(encoding="utf-8")
         self.assert_one_file(text)
         for part in ("A: one wide light blue, B: other thin black.",
                      "<td>contact.friction</td><td>18 deg</td><td>25 deg</td>",
                      '<figure id="curves"', '<tr class="same"><td>grains</td>'):
             self.assertIn(part, text)
-        q = np.genfromtxt(self.runs / "one/history.csv", delimiter=",", names=True)["q_Pa"]
+        q = columns(self.runs / "one/history.csv")["q"]
         self.assertIn(f'<td>peak q (kPa)</td><td class="number">{q[np.argmax(np.abs(q))] / 1e3:.6g}</td>', text)
         scene = re.search(r'id="scene">.*?</section>', text, re.S)[0]
         self.assertEqual(re.findall(r"<tr><td>([^<]*)", scene), ["contact.friction", "output.folder"])
 
     def test_units(self):
-        """Those of the summary's text: 199.999 kPa for 199999 Pa, deg and Pa at the end of a name are in brackets."""
-        self.assert_done(self.compare(self.runs / "one", self.runs / "other"))
-        text = (self.folder / "compare.html").read_text(encoding="utf-8")
+        """Those of the summary's text: 199.999 kPa for 199999 Pa, deg and Pa at the end of a name stand in brackets."""
+        text = self.compare(self.runs / "one", self.runs / "other")
         p0 = json.loads((self.runs / "one/summary.json").read_text(encoding="utf-8"))["p0"]
         self.assertIn(f'<td>p0 (kPa)</td><td class="number">{p0 / 1e3:.6g}</td>', text)
         self.assertIn("<td>p_end (kPa)</td>", text)
@@ -82,8 +85,7 @@ class Compare(ReportTest):
 
     def test_with_itself(self):
         before = contents(self.runs / "one")
-        self.assert_done(self.compare(self.runs / "one", self.runs / "one", "-o", "same.html"))
-        text = (self.folder / "same.html").read_text(encoding="utf-8")
+        text = self.compare(self.runs / "one", self.runs / "one", "same.html")
         self.assertIn("Every key of the scenes is the same.", text)
         self.assertNotIn("differs", text)
         self.assertEqual(contents(self.runs / "one"), before)
@@ -94,9 +96,7 @@ class Compare(ReportTest):
         text, n = re.subn(r"(?m)^(command +).*$", r"\1isostat.run() in Python", path.read_text(encoding="utf-8"))
         self.assertEqual(n, 1)
         path.write_text(text, encoding="utf-8")
-        self.assert_done(self.compare(self.runs / "one", "notebook"))
-        self.assert_done(self.run_app("isostat", "report", "notebook"))
-        self.assertTrue((self.folder / "notebook/report.html").exists())
+        self.compare(self.runs / "one", "notebook")
 
     def test_equal_curves_are_seen_to_be_two(self):
         """Both colours are there, unmixed, and the legend has the lines of the curves."""
@@ -132,12 +132,16 @@ class Compare(ReportTest):
         self.assertGreater(figure.axes[2].get_ylim()[1], 1.02 * run["p"].max() / 1e3)
         plt.close(figure)
 
-    def refuse(self, first, second, *parts):
-        self.assert_refused(self.compare(first, second), *parts)
+    def refuse(self, first, second, *parts, output="compare.html"):
+        with self.assertRaises(NoResults) as caught:
+            self.compare(first, second, output)
+        for part in parts:
+            self.assertIn(part, str(caught.exception))
         self.assertFalse((self.folder / "compare.html").exists())
 
     def test_no_results(self):
-        self.refuse(self.runs / "one", "nowhere", "nowhere", "no such folder", "results folder of a run")
+        self.assert_refused(self.run_app("isostat", "compare", self.runs / "one", "nowhere"), "nowhere",
+                            "no such folder", "results folder of a run")
         self.refuse(self.folder, self.runs / "one", "is not a results folder", "provenance.txt")
 
     def test_unfinished(self):
@@ -152,39 +156,13 @@ class Compare(ReportTest):
         self.refuse(self.runs / "one", "column", "is of element_test", "of soil_column", "two runs of one program")
 
     def test_place_of_the_file(self):
-        result = self.compare(self.runs / "one", self.runs / "other", "-o", "nowhere/compare.html")
-        self.assert_refused(result, "nowhere/compare.html", "--output")
+        self.refuse(self.runs / "one", self.runs / "other", "nowhere/compare.html", "--output",
+                    output="nowhere/compare.html")
 
     def test_files_of_others_are_not_replaced(self):
         self.write("thesis.tex", "precious")
         os.mkfifo(self.folder / "pipe")
         for name in ("thesis.tex", "pipe"):
-            result = self.compare(self.runs / "one", self.runs / "other", "-o", name)
-            self.assert_refused(result, f"{name}: exists and is not a page of Isostat. Give another --output")
+            self.refuse(self.runs / "one", self.runs / "other",
+                        f"{name}: exists and is not a page of Isostat. Give another --output", output=name)
         self.assertEqual((self.folder / "thesis.tex").read_text(encoding="utf-8"), "precious")
-
-
-class Launcher(AppTest):
-    def test_help(self):
-        result = self.run_app("isostat", "--help")
-        self.assert_done(result)
-        programs = [name for name in ("element_test", "soil_column") if (BIN / name).exists()]
-        for word in ("calibrate", "compare", "report", *programs):
-            self.assertRegex(result.stdout, rf"(?m)^  {word} ")
-        self.assertEqual(self.run_app("isostat").stdout, result.stdout)
-
-    def test_version(self):
-        self.assertRegex(self.run_app("isostat", "--version").stdout, r"^isostat \d+\.\d+\.\d+ \(")
-
-    def test_unknown(self):
-        self.assert_refused(self.run_app("isostat", "blend"), "blend", "isostat --help")
-
-    def test_other_programs(self):
-        """With what follows, and their exit codes."""
-        self.assertEqual(self.run_app("isostat", "element_test", "--print-defaults").stdout,
-                         self.run_app("element_test", "--print-defaults").stdout)
-        self.assert_refused(self.run_app("isostat", "element_test", "nowhere.toml"), "nowhere.toml")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A number in a checkpoint that is none, or infinite, and members that are wrong: the run does not continue from it,
 says where it is, and takes the checkpoint before where that is whole. Here some of the numbers, alternately the one and
@@ -12,7 +11,7 @@ import numpy as np
 
 from biaxial_test import FRICTION
 from failing_runs import COLUMN, EVERY, SAVED
-from support import CYCLIC, AppTest, contents, main, results, tiny_scene
+from support import CYCLIC, AppTest, contents, tiny_scene
 
 QUIET = ("-q", "--no-figures")
 FOR_OTHERS = ("state/grains/mass", "state/grains/inertia")  # their inverses are next to velocities
@@ -45,7 +44,7 @@ def damage(file, item, attribute, value):
 class DamagedCheckpoints(AppTest):
     def stopped(self, program, arguments):
         """The folder of a run that was stopped."""
-        code = self.run_and_stop(0.05, signal.SIGTERM, (self.folder / "parts/checkpoint/previous.h5", True), *arguments,
+        code = self.run_and_stop(0.02, signal.SIGTERM, (self.folder / "parts/checkpoint/previous.h5", True), *arguments,
                                  "-o", "parts", program=program)
         self.assertEqual(code, 130, "it is still at work")
         return self.folder / "parts"
@@ -76,7 +75,7 @@ class DamagedCheckpoints(AppTest):
         return parts
 
     def test_members_of_an_element_test(self):
-        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
         arguments = (scene, *SAVED, *QUIET)
         parts = self.stopped("element_test", arguments)
 
@@ -110,7 +109,7 @@ class DamagedCheckpoints(AppTest):
                 self.refuse("element_test", arguments, parts, change, said)
 
     def test_a_folder_in_place_of_the_last_checkpoint(self):
-        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
         arguments = (scene, *SAVED, *QUIET)
         last = self.stopped("element_test", arguments) / "checkpoint/last.h5"
         last.unlink()
@@ -120,7 +119,7 @@ class DamagedCheckpoints(AppTest):
 
     def test_an_edge_without_length(self):
         """Finite, and so taken: its logarithm is not."""
-        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
         arguments = (scene, *SAVED, *QUIET)
         checkpoint = self.stopped("element_test", arguments) / "checkpoint"
         (checkpoint / "previous.h5").unlink()
@@ -158,7 +157,7 @@ class DamagedCheckpoints(AppTest):
                 self.refuse("soil_column", arguments, parts, functools.partial(soil, place), "is not finite")
 
     def test_element_test(self):
-        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
         parts = self.damage_each("element_test", scene)
         with h5py.File(parts / "checkpoint/last.h5", "r+") as last:
             damage(last, "state/grains/velocity", None, np.nan)
@@ -168,14 +167,14 @@ class DamagedCheckpoints(AppTest):
                                         "nan in its velocity")
         self.assertIn("continues from the checkpoint before", result.stderr)
         self.assert_done(self.run_app("element_test", scene, *SAVED, *QUIET, "-o", "whole"))
-        self.assertEqual(results(parts), results(self.folder / "whole"))
+        self.assert_same_results("parts", "whole")
 
     def test_soil_column(self):
         self.damage_each("soil_column", self.write("column.toml", COLUMN.replace("0.6 s", "6 s")))
 
     def test_a_link_in_a_history(self):
         """It is left out: what it leads to may be of others."""
-        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=4000)))
+        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
         parts = self.stopped("element_test", (scene, *SAVED, *QUIET))
         with h5py.File(self.folder / "others.h5", "w") as others:
             others["secret"] = np.arange(3.)
@@ -196,7 +195,7 @@ class DamagedCheckpoints(AppTest):
     def test_files_that_a_loss_of_power_leaves(self):
         """Zeros at the end of the last checkpoint, and no more than a part of the table: the run continues."""
         for program, scene, more in (
-                ("element_test", self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000))), ()),
+                ("element_test", self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000))), ()),
                 ("soil_column", self.write("column.toml", COLUMN.replace("0.6 s", "6 s")), ()),
                 ("biaxial", self.write("block.toml", FRICTION), ("--set", "test.steps=500"))):
             arguments = (scene, *more, *SAVED, *QUIET)
@@ -209,13 +208,9 @@ class DamagedCheckpoints(AppTest):
                 result = self.run_app(program, *arguments, "-o", "parts", "--resume")
                 self.assert_done(result)
                 self.assertRegex(result.stderr, "last.h5: damaged: .* its check sum is lost")
-                self.assertEqual(results(parts), results(self.folder / "whole"))
+                self.assert_same_results("parts", "whole")
             shutil.rmtree(self.folder / "parts")
             shutil.rmtree(self.folder / "whole")
 
     def test_biaxial(self):
         self.damage_each("biaxial", self.write("block.toml", FRICTION), "--set", "test.steps=2000")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Calls that fail (tests/support/failing_calls.cpp): whatever open, write, fsync, rename or mkdir of a run is refused,
 once or from then on, the program says so and ends with 1 or 2, nothing is left half written, and the run continues to
@@ -11,7 +10,7 @@ import signal
 from biaxial_test import FRICTION
 from failing_runs import COLUMN, EVERY, OUTPUT, SAVED, SHORT_TEST, FailingRuns
 from grain_column_test import GrainColumnTest
-from support import main, results
+from support import results
 from void_ratio_limits_test import LIMITS, QUICK
 
 
@@ -82,7 +81,3 @@ class Replays(FailingRuns, GrainColumnTest):
     def test_rve_replay(self):
         self.whole()
         self.every_call("rve_replay", "whole/paths/d0", goes_on=FailingRuns.anew, most=1)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The figures of the soil column: their analysis against closed forms, and that a run gets those it has data for."""
 import contextlib
@@ -13,20 +12,17 @@ import tempfile
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-APPS = ROOT / "apps"
-sys.path[:0] = [str(APPS), str(ROOT / "scripts")]
-import column_fixture as fixture  # noqa: E402  (the path comes first)
-from figures.column_analysis import (Terzaghi, exact_transfer, response_spectrum, smoothed,  # noqa: E402
+import column_fixture as fixture
+from figures.column_analysis import (Terzaghi, exact_transfer, response_spectrum, smoothed,
                                      transfer_function)
-from figures.column_consolidation import settlement  # noqa: E402
-from figures.column_results import Column, quantity  # noqa: E402
-from figures.column_grains import first  # noqa: E402
-from figures.column_soil import outline  # noqa: E402
-from figures.common import plt, use_style  # noqa: E402
-from figures.soil_column import DRAWING  # noqa: E402
-from legends_test import covered  # noqa: E402
-from support import TIME_LIMIT, ToleranceTest, main  # noqa: E402
+from figures.column_consolidation import settlement
+from figures.column_results import Column, quantity
+from figures.column_grains import first
+from figures.column_soil import outline
+from figures.common import plt, use_style
+from figures.soil_column import DRAWING
+from element_figures_test import covered
+from support import ROOT, TIME_LIMIT, ToleranceTest
 
 PERIODS = np.array([0.02, 0.05, 0.2, 0.5, 1, 3, 10])
 
@@ -132,7 +128,7 @@ class Figures(ToleranceTest):
 
     def draw(self, folder, *arguments):
         return subprocess.run([sys.executable, "-m", "figures", "soil_column", str(folder), *arguments],
-                              env={**os.environ, "PYTHONPATH": str(APPS)}, capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "apps")}, capture_output=True, text=True,
                               timeout=TIME_LIMIT, check=False)
 
     def expect(self, folder, *names):
@@ -297,7 +293,3 @@ class SimulatedMotion(ToleranceTest):
             good = make_motion.check(make_motion.parameters(["--check"]))
         print(said.getvalue())
         self.assertEqual(good, 0)
-
-
-if __name__ == "__main__":
-    main()

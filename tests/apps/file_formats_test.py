@@ -1,9 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """docs/file_formats.md against the files that the programs write: every dataset with its unit and number of dimensions,
 every attribute, every column of history.csv is in the section of its format."""
 import csv
-import pathlib
 import re
 
 import h5py
@@ -12,9 +10,9 @@ from biaxial_test import ELASTIC
 from column_support import SCENES, settings
 from grain_column_test import GrainColumnTest
 from plate_test import BOX as PLATE
-from support import CYCLIC, main, tiny_scene
+from support import CYCLIC, ROOT, tiny_scene
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/file_formats.md"
+PAGE = ROOT / "docs/file_formats.md"
 ROOT = {"format", "schema_version", "units", "program", "program_version"}
 CELL = 'domain = "periodic-cell"\npreparation_friction = "10 deg"'
 SHEAR = '[[stage]]\nkind = "undrained-simple-shear"\nstrain = 0.02\nmax_steps = 500\n'
@@ -117,7 +115,3 @@ class FileFormats(GrainColumnTest):
         self.assert_done(self.run_column(self.write("plate.toml", PLATE), "-o", "plate", "-q"))
         block = self.write("block.toml", ELASTIC.format(degree=1))
         self.assert_done(self.run_app("biaxial", block, "-o", "block", "-q", "--no-figures"))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column with packings of grains in a box whose ground is inclined: settled, shaken, on ranks and threads, and
 killed."""
@@ -12,7 +11,7 @@ import numpy as np
 import grain_column_test
 from column_support import settings
 from grain_column_test import GRAINS
-from support import main
+from support import columns
 
 BOX = re.sub(r"(snapshot|path)_(depths|interval).*\n", "", GRAINS).replace(
     "[mesh]\ndegree = 1\n", """[mesh]
@@ -53,10 +52,6 @@ class Box(grain_column_test.GrainColumnTest):
         self.assertTrue(((redundancy > 0.5) & (redundancy < 3)).all(), redundancy)
         self.assertEqual(np.abs(moved[0]).max(), 0)
         self.assertGreater(np.abs(moved[-1]).max(), 1e-6)
-        profiles = np.genfromtxt(self.folder / "run/grain_profiles/history.csv", delimiter=",", names=True)
-        rows = np.array([profiles[name] for name in profiles.dtype.names if re.fullmatch(r"p\d+_IR_?", name)]).T
+        profiles = columns(self.folder / "run/grain_profiles/history.csv")
+        rows = np.array([values for name, values in profiles.items() if re.fullmatch(r"p\d+_IR", name)]).T
         self.assert_near(np.sort(rows[0]), np.sort(redundancy[0]), 1e-9, "ten digits of a table for people")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,6 +1,8 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of element_test that are stopped, killed, resumed, or watched more or less closely continue to the same bits."""
+"""Runs of element_test that are stopped, killed, resumed, or watched more or less closely continue to the same bits.
+One machine as another that has fewer instructions: each set has its own bits, all the same test, and a run that continues
+with another set than its checkpoint was written with says so."""
+import os
 import pathlib
 import random
 import re
@@ -10,7 +12,8 @@ import time
 import h5py
 import numpy as np
 
-from support import AppTest, CYCLIC, MONOTONIC, REBALANCE, contents, main, tiny_scene
+from column_support import history
+from support import CYCLIC, MONOTONIC, REBALANCE, AppTest, contents, results, tiny_scene
 
 STAGES = REBALANCE.format(steps=1500) + MONOTONIC.format(steps=4000) + CYCLIC.format(steps=6000)
 EVERY_256_STEPS = ("--set", "output.checkpoint=1e-9 min")
@@ -147,5 +150,50 @@ class Output(AppTest):
         self.assert_same_trajectory(full, bare)
 
 
-if __name__ == "__main__":
-    main()
+class InstructionSets(AppTest):
+    def setUp(self):
+        super().setUp()
+        self.addCleanup(os.environ.pop, "ISOSTAT_INSTRUCTION_SET", None)
+        self.scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=2000)))
+        refused = self.run_on("MMX", "none")
+        self.assert_refused(refused, "ISOSTAT_INSTRUCTION_SET = MMX; this machine has ", "unset it")
+        self.sets = re.search(r"this machine has ([A-Z0-9_, ]+)\.", refused.stderr).group(1).split(", ")
+        self.assertGreater(len(self.sets), 1)
+
+    def run_on(self, instruction_set, folder, *arguments):
+        os.environ["ISOSTAT_INSTRUCTION_SET"] = instruction_set
+        return self.run_test(self.scene, *EVERY_256_STEPS, "-q", "-o", folder, *arguments)
+
+    def test_one_test(self):
+        """Round-off is all that differs; contacts that open and close make it grow."""
+        rows = {}
+        for name in self.sets:
+            self.assert_done(self.run_on(name, name))
+            self.assertIn(f"instruction set   {name}\n", (self.folder / name / "provenance.txt").read_text())
+            rows[name] = history(self.folder / name)
+        widest = rows[self.sets[0]]
+        for name in self.sets[1:]:
+            self.assertEqual(rows[name].keys(), widest.keys())
+            for column in ("p", "q", "e"):
+                off = np.abs(rows[name][column] - widest[column]).max() / np.abs(widest[column]).max()
+                print(f"  {name:8} {column:10} {off:.1e}", flush=True)
+                self.assert_below(off, 2e-4, "round-off that grows through 2,000 steps, to 2e-5 here")
+
+    def test_goes_on(self):
+        widest, other = self.sets[0], self.sets[-1]
+        self.assert_done(self.run_on(other, "whole"))
+        whole = results(self.folder / "whole")
+        for folder, goes_on, noted in (("same", other, False), ("changed", widest, True)):
+            os.environ["ISOSTAT_INSTRUCTION_SET"] = other
+            code = self.run_and_stop(0, signal.SIGTERM, (self.folder / folder / "checkpoint/last.h5", True),
+                                     self.scene, *EVERY_256_STEPS, "-o", folder)
+            self.assertEqual(code, 130, "it is still at work")
+            result = self.run_on(goes_on, folder, "--resume")
+            self.assert_done(result)
+            self.assertEqual(f"warning: the checkpoint was written with the instruction set {other}, this machine "
+                             f"continues with {widest}: " in result.stderr, noted, result.stderr)
+            self.assertEqual(results(self.folder / folder) == whole, not noted)
+
+    def test_other_programs(self):
+        os.environ["ISOSTAT_INSTRUCTION_SET"] = "MMX"
+        self.assert_refused(self.run_app("isostat", "convert", "a", "b"), "MMX", *self.sets)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Solutions for collapse against published values, each other and their limits."""
 import math
@@ -7,7 +6,7 @@ import numpy as np
 
 import limit_loads as limit
 from characteristics import Strip, bearing_capacity
-from support import ToleranceTest, main
+from support import ToleranceTest
 
 PRINTED = "the digits that are printed"
 
@@ -106,7 +105,3 @@ class Wall(ToleranceTest):
                 values = [way * solution(phi, math.radians(d), passive) for d in (0, 10, 20, 30)]
                 self.assertEqual(values, sorted(values), (solution, passive))
         self.assertGreater(limit.coulomb(phi, phi / 2, True), limit.stress_field(phi, phi / 2, True))
-
-
-if __name__ == "__main__":
-    main()

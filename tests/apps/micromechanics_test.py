@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The program micromechanics: its tables against the history of the run and against each other, and its refusals."""
 import csv
@@ -8,7 +7,7 @@ import re
 import h5py
 import numpy as np
 
-from support import AppTest, CYCLIC, contents, main, tiny_scene
+from support import AppTest, CYCLIC, contents, tiny_scene
 
 
 def read_table(path):
@@ -149,7 +148,3 @@ class Micromechanics(AppTest):
         with h5py.File(self.folder / "run/snapshots/snapshot_0001.h5", "r+") as file:
             del file["snapshot/contacts/normal_force"]
         self.refuse("snapshot_0001.h5", "normal_force")
-
-
-if __name__ == "__main__":
-    main()

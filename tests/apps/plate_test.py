@@ -1,14 +1,12 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column with a rigid plate that moves into a box of soil: forces of elastic soil in closed form, what it leaves,
 and restarts."""
-import json
 import signal
 
 import numpy as np
 
 from column_support import ColumnTest, settings
-from support import main
+from support import columns
 
 BOX = """title = "plate"
 [mesh]
@@ -45,13 +43,11 @@ class PlateTest(ColumnTest):
     def plate(self, name="run", **values):
         """The rows of plate/history.csv, and the summary."""
         self.assert_done(self.run_column(self.scene, "-o", name, "--quiet", *settings(**values)))
-        table = np.genfromtxt(self.folder / name / "plate/history.csv", delimiter=",", names=True)
-        return table, json.loads((self.folder / name / "summary.json").read_text(encoding="utf-8"))["plate"]
+        return columns(self.folder / name / "plate/history.csv"), self.summary_of(name)["plate"]
 
     def forces(self, name="run", **values):
         table, summary = self.plate(name, **values)
-        names = {column.split("_")[0]: column for column in table.dtype.names}
-        return table[names["displacement"]], table[names["force"]], table[names["pressure"]], summary
+        return table["displacement"], table["force"], table["pressure"], summary
 
     def test_a_press_over_the_whole_surface_is_confined_compression(self):
         way, force, pressure, summary = self.forces(analysis__rough="false")
@@ -90,7 +86,7 @@ class PlateTest(ColumnTest):
         for rough in ("false", "true"):
             table, _ = self.plate(rough, analysis__on="left", analysis__rough=rough, mesh__width="2 m",
                                   mesh__cells_across=4)
-            shear = next(table[name] for name in table.dtype.names if name.startswith("shear_force"))
+            shear = table["shear_force"]
             foot = 9.81 * 1800 * 2 * 0.5 / 6 if rough == "true" else 0  # what the base bears at the node they share
             self.assert_near(shear[0], foot, 1e-6 * WEIGHT, "it was a smooth wall when the soil settled")
             self.assertEqual(shear[-1] < foot - 1000, rough == "true", "soil that is pressed rises, the wall holds it")
@@ -102,12 +98,4 @@ class PlateTest(ColumnTest):
         self.assertGreater(force[-1], MODULUS * way[-1] / 2 * 1, "the soil next to it helps")
 
     def test_goes_on_where_it_was_stopped(self):
-        options = settings(analysis__load_steps=60, output__checkpoint="1e-9 min")
-        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
-        self.stop_when_saved(self.scene, signal.SIGKILL, *options)
-        self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
-        self.assert_same_files("whole", "parts")
-
-
-if __name__ == "__main__":
-    main()
+        self.check_restart(signal.SIGKILL, *settings(analysis__load_steps=60))

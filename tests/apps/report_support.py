@@ -1,18 +1,33 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of reports and comparisons share: runs that a class makes once, what every page has to hold to."""
+import contextlib
 import html
+import importlib
+import io
 import os
 import pathlib
 import re
 import shutil
 import subprocess
 import tempfile
+from unittest import mock
 
-from support import BIN, TIME_LIMIT, AppTest, tiny_scene
+from report import run
+from support import BIN, ROOT, TIME_LIMIT, AppTest, tiny_scene
 
-os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
-SCENES = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes"
+os.environ["OMP_NUM_THREADS"] = "1"
+SCENES = ROOT / "apps/scenes"
 MOST_BYTES = 2.5e6  # of a report
+
+
+def page(folder, *names, program="element_test", code=0):
+    """The report of a results folder, left in this process with no more than these figures: quicker than a program."""
+    drawing = importlib.import_module(f"figures.{program}").DRAWING
+    figures = {name: drawing.figures[name] for name in names}
+    with mock.patch.object(drawing, "figures", figures), contextlib.redirect_stdout(io.StringIO()):
+        found = run.leave(folder, program)
+    assert found == code, f"{folder}: exit code {found}"
+    return (folder / "report.html").read_text(encoding="utf-8")
 
 
 class ReportTest(AppTest):

@@ -1,26 +1,28 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""report.html of a run: what it holds, that it is one file, how it looks in a browser, what its failure costs."""
+"""report.html of a run: what it holds, that it is one file, how it looks in a browser, what its failure costs, and
+messages about damaged files."""
 import html
 import importlib
+import json
 import pathlib
 import re
 import shutil
 import subprocess
-import sys
+import tomllib
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "apps"))
-from figures import element_test, soil_column  # noqa: E402  (the path comes first)
-from figures.__main__ import PROGRAMS  # noqa: E402
-from figures.common import plt  # noqa: E402
-from report import narrow  # noqa: E402
-from report.folder import find_results  # noqa: E402
-from report.run import calls  # noqa: E402
-from report_support import SCENES, ReportTest  # noqa: E402
-from support import BIN, CYCLIC, TIME_LIMIT, contents, main, tiny_scene  # noqa: E402
+from figures import element_test, soil_column
+from figures.__main__ import PROGRAMS
+from figures.common import plt
+from figures.files import Damaged, read_parsed
+from report import narrow
+from report.folder import NoResults, find_results
+from report.run import calls
+from report_support import SCENES, ReportTest, page
+from support import BIN, CYCLIC, TIME_LIMIT, AppTest, contents, tiny_scene
 
 BROWSER = shutil.which("chromium")
+REST = '[[stage]]\nkind = "hold"\nbalance = 0.05\n'  # three figures in place of eight
 MONOTONIC = '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.001\n'
 
 # What the page says of itself when its script has run: width of the content, number of figures that leave the window or
@@ -107,6 +109,7 @@ class Reports(ReportTest):
         super().setUpClass()
         cls.said = cls.make_test("cyclic", output='checkpoint = "0.001 s"', stages=CYCLIC.format(steps=2000))
         cls.make_test("whole", motion="damping = 0.2", stages=MONOTONIC)
+        cls.make_test("rest", stages=REST)
         cls.make_test("fast", "--set", "contact.young=10 GPa", "--set", "stage.0.deviator_amplitude=60 kPa",
                       motion="inertial_number = 0.02\nload_per_wave = 0", stages=CYCLIC.format(steps=20000))
 
@@ -142,16 +145,15 @@ class Reports(ReportTest):
 
     def test_started_from_python(self):
         """What continues and what repeats are calls, not commands of a shell."""
-        shutil.copytree(self.runs / "cyclic", self.folder / "out")
+        shutil.copytree(self.runs / "rest", self.folder / "out")
         provenance = self.folder / "out/provenance.txt"
         for function in ("isostat.column.run", "isostat.run"):
             text = provenance.read_text(encoding="utf-8")
             provenance.write_text(re.sub(r"(?m)^(command\s+).*$", rf"\1{function}() in Python", text), encoding="utf-8")
             self.assertEqual(calls(find_results(self.folder / "out")), (
                 f'{function}(scene, "{self.folder}/out", resume=True)', f'{function}(scene, "results/again")'))
-        self.assert_done(self.run_app("isostat", "report", "out"))
-        text = html.unescape((self.folder / "out/report.html").read_text(encoding="utf-8"))
-        self.assertIn('>isostat.run(scene, "out", resume=True)<', text)
+        text = html.unescape(page(self.folder / "out"))
+        self.assertIn(f'>isostat.run(scene, "{self.folder}/out", resume=True)<', text)
         self.assertNotIn("in Python --resume", text)
 
     def test_without(self):
@@ -164,35 +166,33 @@ class Reports(ReportTest):
         shutil.copytree(self.runs / "whole", self.folder / "out")
         for name in ("summary.json", "summary.txt"):
             (self.folder / "out" / name).unlink()
-        self.assert_done(self.run_app("isostat", "report", "out"))
-        text = (self.folder / "out/report.html").read_text(encoding="utf-8")
+        text = page(self.folder / "out", "fig_stress_path")
         self.assertIn("Not finished:", text)
         self.assertNotIn("ended by", text)
         (self.folder / "out/history.csv").unlink()
-        self.assertEqual(self.run_app("isostat", "report", "out").returncode, 2)
-        text = (self.folder / "out/report.html").read_text(encoding="utf-8")
-        self.assertIn("No figures: out/history.csv", text)
+        text = page(self.folder / "out", code=2)
+        self.assertIn(f"No figures: {self.folder}/out/history.csv", text)
         self.assert_one_file(text)
 
     def test_failure_costs_nothing(self):
         """A folder in the way of the report: one line says so, and the run is done."""
-        shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
-        shutil.copy(self.runs / "cyclic.toml", self.folder)
-        (self.folder / "cyclic/summary.json").unlink()  # as if it had been stopped before its end
-        (self.folder / "cyclic/report.html").unlink()
-        (self.folder / "cyclic/report.html").mkdir()
-        result = self.run_app("element_test", "cyclic.toml", "-o", "cyclic", "-q", "--resume")
+        shutil.copytree(self.runs / "rest", self.folder / "rest")
+        shutil.copy(self.runs / "rest.toml", self.folder)
+        (self.folder / "rest/summary.json").unlink()  # as if it had been stopped before its end
+        (self.folder / "rest/report.html").unlink()
+        (self.folder / "rest/report.html").mkdir()
+        result = self.run_app("element_test", "rest.toml", "-o", "rest", "-q", "--resume")
         self.assert_done(result)
         lines = [line for line in result.stderr.splitlines() if "ended by max_steps" not in line]
         self.assertEqual(len(lines), 1, result.stderr)
         self.assertIn("report.html: not written", result.stderr)
-        self.assertIn("figures in cyclic/figures", result.stdout)
+        self.assertIn("figures in rest/figures", result.stdout)
         self.assertNotIn("one page", result.stdout)
 
     def test_a_title_is_words(self):
         """Neither markup nor formula, whatever is in it."""
         title = "<script>alert(1)</script> $x_{ % $ \\frac{"
-        scene = (self.runs / "cyclic.toml").read_text(encoding="utf-8").replace('"tiny"', f"'{title}'")
+        scene = (self.runs / "rest.toml").read_text(encoding="utf-8").replace('"tiny"', f"'{title}'")
         self.assertIn(title, scene)
         result = self.run_app("element_test", self.write("odd.toml", scene), "-o", "odd", "-q")
         self.assert_done(result)
@@ -203,43 +203,43 @@ class Reports(ReportTest):
 
     def test_python_of_the_working_folder_is_left_alone(self):
         """An untrusted folder of results may hold anything."""
-        shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
-        shutil.rmtree(self.folder / "cyclic/figures")
-        shutil.copy(self.runs / "cyclic.toml", self.folder)
+        shutil.copytree(self.runs / "rest", self.folder / "rest")
+        shutil.rmtree(self.folder / "rest/figures")
+        shutil.copy(self.runs / "rest.toml", self.folder)
         for name in ("report", "figures", "json", "numpy", "random"):
             self.write(f"{name}.py", "open('was_run', 'w').close()")
-        (self.folder / "cyclic/report.html").unlink()
-        self.assert_done(self.run_app("element_test", "cyclic.toml", "-o", "cyclic", "-q", "--resume"))
-        self.assertTrue((self.folder / "cyclic/report.html").exists())
-        self.assert_done(self.run_app("isostat", "report", "cyclic"))
-        self.assertTrue((self.folder / "cyclic/figures").is_dir())
+        (self.folder / "rest/report.html").unlink()
+        self.assert_done(self.run_app("element_test", "rest.toml", "-o", "rest", "-q", "--resume"))
+        self.assertTrue((self.folder / "rest/report.html").exists())
+        self.assert_done(self.run_app("isostat", "report", "rest"))
+        self.assertTrue((self.folder / "rest/figures").is_dir())
         self.assertFalse((self.folder / "was_run").exists())
 
     def test_a_style_in_the_working_folder_is_left_alone(self):
-        shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
-        shutil.rmtree(self.folder / "cyclic/figures")
+        shutil.copytree(self.runs / "rest", self.folder / "rest")
+        shutil.rmtree(self.folder / "rest/figures")
         self.write("matplotlibrc", "text.usetex: True\nsavefig.format: svg\nfigure.figsize: 1, 1\n")
-        self.assert_done(self.run_app("isostat", "report", "cyclic"))
-        self.assertEqual(contents(self.folder / "cyclic/figures"), contents(self.runs / "cyclic/figures"))
+        self.assert_done(self.run_app("isostat", "report", "rest"))
+        self.assertEqual(contents(self.folder / "rest/figures"), contents(self.runs / "rest/figures"))
 
     def test_links_in_a_folder_of_a_stranger_are_not_followed(self):
-        shutil.copytree(self.runs / "cyclic", self.folder / "cyclic")
-        shutil.copy(self.runs / "cyclic.toml", self.folder)
-        figures = sorted((self.folder / "cyclic/figures").glob("*.png"))
-        links = [figures[0], *(self.folder / "cyclic" / name for name in ("report.html", "figures.log"))]
+        shutil.copytree(self.runs / "rest", self.folder / "rest")
+        shutil.copy(self.runs / "rest.toml", self.folder)
+        figures = sorted((self.folder / "rest/figures").glob("*.png"))
+        links = [figures[0], *(self.folder / "rest" / name for name in ("report.html", "figures.log"))]
         for link in links:
             link.unlink(missing_ok=True)
             link.symlink_to(self.write("thesis.txt", "precious"))
-        self.assert_done(self.run_app("isostat", "report", "cyclic"))
+        self.assert_done(self.run_app("isostat", "report", "rest"))
         links[1].unlink()
-        self.assert_done(self.run_app("element_test", "cyclic.toml", "-o", "cyclic", "-q", "--resume"))
+        self.assert_done(self.run_app("element_test", "rest.toml", "-o", "rest", "-q", "--resume"))
         self.assertEqual((self.folder / "thesis.txt").read_text(encoding="utf-8"), "precious")
         self.assertFalse(any(link.is_symlink() for link in links))
 
     def test_a_folder_whose_name_looks_like_an_option(self):
         (self.folder / "dash").mkdir()
-        shutil.copy(self.runs / "cyclic.toml", self.folder)
-        self.assert_done(self.run_app("element_test", "cyclic.toml", "--output=-dash", "-q"))
+        shutil.copy(self.runs / "rest.toml", self.folder)
+        self.assert_done(self.run_app("element_test", "rest.toml", "--output=-dash", "-q"))
         self.assertTrue((self.folder / "-dash/report.html").exists())
 
     def test_a_package_that_is_missing_is_named(self):
@@ -249,6 +249,19 @@ class Reports(ReportTest):
                                     env={"PYTHONPATH": f"{self.folder}:{SCENES.parent}"}, capture_output=True)
             self.assertEqual(result.returncode, 1, result.stderr)
             self.assertIn("no module matplotlib: install it, apt-get install python3-matplotlib", result.stderr)
+
+    def test_damaged_files_are_named(self):
+        shutil.copytree(self.runs / "rest", self.folder / "cut")
+        for name in ("scene.toml", "summary.json"):
+            path = self.folder / "cut" / name
+            whole = path.read_text(encoding="utf-8")
+            path.write_text("\n".join([*whole.splitlines()[:4], '"half = ']), encoding="utf-8")
+            with self.assertRaisesRegex(NoResults, rf"cut/{name}:5: is damaged \(.*Restore it.*--resume"):
+                find_results(self.folder / "cut")
+            if name == "scene.toml":
+                path.write_text(whole, encoding="utf-8")
+        for arguments in (("report", "cut"), ("compare", self.runs / "rest", "cut")):
+            self.assert_refused(self.run_app("isostat", *arguments), "cut/summary.json:5: is damaged (")
 
     @unittest.skipUnless(BROWSER, "chromium is not installed")
     def test_in_a_browser(self):
@@ -275,7 +288,31 @@ class Reports(ReportTest):
             self.assertGreater(image.stat().st_size, 20000)
 
 
-@unittest.skipUnless(BIN and (BIN / "soil_column").exists(), "built without the continuum half")
+class DamagedTables(AppTest):
+    def said(self, text, parse=json.loads):
+        path = self.folder / "file"
+        path.write_bytes(text)
+        with self.assertRaises(Damaged) as caught:
+            read_parsed(path, parse)
+        return str(caught.exception).removeprefix(str(path))
+
+    def test_place_and_reason(self):
+        cut = b'{\n  "title": "one",\n  "grains": 20'
+        self.assertRegex(self.said(cut), r"^:3: is damaged \(Expecting ',' delimiter\)\. Restore it")
+        self.assertRegex(self.said(b""), r"^:1: is damaged \(it is empty\)\.")
+        self.assertRegex(self.said(b'{\n"title": "\xff"}'), r"^:2: is damaged \(it holds bytes that are no text\)")
+        self.assertRegex(self.said(b"[1, 2]"), r"^:1: is damaged \(it holds no table")
+        self.assertRegex(self.said(b"[grading]\ngrains = \n", tomllib.loads), r"^:2: is damaged \(Invalid value\)\.")
+        self.assertRegex(self.said(b'[grading]\ngrains = "2', tomllib.loads), r"^:2: is damaged \(Unterminated string")
+
+    def test_whole(self):
+        path = self.write("file", '{"grains": 200}')
+        self.assertEqual(read_parsed(path), {"grains": 200})
+        with self.assertRaises(FileNotFoundError):
+            read_parsed(self.folder / "nowhere")
+
+
+@unittest.skipUnless((BIN / "soil_column").exists(), "built without the continuum half")
 class OtherPrograms(ReportTest):
     def test_consolidation(self):
         self.make("soil_column", "column", SCENES / "column/terzaghi.toml", "--set", "analysis.steps=40")
@@ -284,14 +321,10 @@ class OtherPrograms(ReportTest):
         self.assertNotIn("Liquefied:", words)
 
     def test_shaken(self):
-        self.make("soil_column", "shaken", SCENES / "column/recorded_motion.toml", "--set", "analysis.duration=6 s")
+        self.make("soil_column", "shaken", SCENES / "column/recorded_motion.toml", "--set", "analysis.duration=1 s")
         self.assertIn("iquefied:", self.assert_whole("shaken"))
 
     def test_block(self):
         self.make("biaxial", "block", SCENES / "biaxial/iwan.toml", "--set", "test.steps=4", "--set",
                   "test.axial_strain=0.002", "--set", "output.map_every=1")
         self.assertIn("Ended at its target, an axial strain of 0.2 %.", self.assert_whole("block"))
-
-
-if __name__ == "__main__":
-    main()

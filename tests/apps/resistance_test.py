@@ -1,14 +1,12 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """isostat resistance on a few grains: tables and fit, runs that are kept, that fail, that are
 interrupted, and its refusals."""
 import csv
-import json
 import signal
 
 import numpy as np
 
-from support import AppTest, MONOTONIC, contents, main, tiny_scene
+from support import AppTest, MONOTONIC, contents, tiny_scene
 
 STAGE = '[[stage]]\nkind = "{}"\nuntil = {{ strain = 0.05 }}\nliquefaction_ratio = 0.3\n'
 CELL = 'domain = "periodic-cell"\npreparation_friction = "14 deg"'
@@ -58,7 +56,7 @@ class LiquefactionResistance(AppTest):
     def test_two_runs(self):
         result = self.run_it(*RATIOS, "-n", "1", "-o", "out", "--no-figures")
         self.assert_done(result)
-        fit = json.loads((self.folder / "out/resistance.json").read_text(encoding="utf-8"))["fit"]
+        fit = self.summary_of("out", "resistance.json")["fit"]
         self.assertEqual(fit["runs"], 2, "both liquefy")
         self.assertIn("whose error two runs cannot give", result.stdout)
         self.assertIsNone(fit["b_error"])
@@ -70,7 +68,7 @@ class LiquefactionResistance(AppTest):
         self.assert_done(result)
         self.assertTrue(all(float(row["N_liquefaction"]) <= 1 for row in self.table()), self.table())
         self.assertIn("none: fewer than two ratios have a run that liquefied, or all within a cycle", result.stdout)
-        self.assertIsNone(json.loads((self.folder / "out/resistance.json").read_text(encoding="utf-8"))["fit"])
+        self.assertIsNone(self.summary_of("out", "resistance.json")["fit"])
 
     def check_fit(self, rows):
         """log N against log CSR, by numpy."""
@@ -79,7 +77,7 @@ class LiquefactionResistance(AppTest):
         self.assertGreater(len({ratio for ratio, _ in liquefied}), 1, rows)
         ratio, cycles = np.log(np.array(liquefied).T)
         slope, shift = np.polyfit(ratio, cycles, 1)
-        fit = json.loads((self.folder / "out/resistance.json").read_text(encoding="utf-8"))["fit"]
+        fit = self.summary_of("out", "resistance.json")["fit"]
         digits = "digits of the table that the fit is repeated from"
         self.assert_near(fit["b"], -1 / slope, 5e-7, digits)
         self.assert_near(fit["a"], np.exp(-shift / slope), 5e-7, digits)
@@ -91,8 +89,7 @@ class LiquefactionResistance(AppTest):
 
     def check_one_run(self, row):
         """The table agrees with the summary of the run."""
-        folder = self.folder / "out/runs" / f"csr{row['CSR']}_seed{row['seed']}"
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        summary = self.summary_of(f"out/runs/csr{row['CSR']}_seed{row['seed']}")
         self.assertEqual(float(row["N_liquefaction"]), max(0.25, summary["liquefaction"]["cycle"]))
         self.assert_near(float(row["e"]), summary["void_ratio"], 5e-5, "four digits in the table")
         self.assertEqual(summary["CSR"], 0.25)
@@ -162,7 +159,3 @@ class LiquefactionResistance(AppTest):
                             "--overwrite")
         self.assertEqual(contents(self.folder / "out"), before)
         self.assert_done(self.run_it(*quick, "--set", "motion.damping=0.3", "--overwrite"))
-
-
-if __name__ == "__main__":
-    main()

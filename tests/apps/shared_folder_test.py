@@ -1,7 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Two runs in one folder: the second is refused whether it would start again or continue, the first does not notice,
 and its folder is free as soon as it has ended, however it has."""
+import concurrent.futures
 import contextlib
 import os
 import shutil
@@ -10,7 +10,7 @@ import subprocess
 
 from biaxial_test import FRICTION
 from failing_runs import COLUMN, SAVED
-from support import ATTEMPTS, CYCLIC, TIME_LIMIT, AppTest, main, results, tiny_scene, wait_until
+from support import ATTEMPTS, CYCLIC, TIME_LIMIT, AppTest, tiny_scene, wait_until
 
 
 def is_stopped(process):
@@ -21,11 +21,11 @@ def is_stopped(process):
 
 class SharedFolder(AppTest):
     @contextlib.contextmanager
-    def halted(self, command):
+    def halted(self, command, out="out"):
         """A run that has a checkpoint and stands still. One that ends first, as on a busy machine, is repeated."""
-        last = self.folder / "out/checkpoint/last.h5"
+        last = self.folder / out / "checkpoint/last.h5"
         for _ in range(ATTEMPTS):
-            with self.started([*command, "-o", "out", "-q", "--no-figures"]) as process:
+            with self.started([*command, "-o", out, "-q", "--no-figures"]) as process:
                 wait_until(last.exists, last, process)
                 process.send_signal(signal.SIGSTOP)
                 if process.poll() is None and is_stopped(process):
@@ -36,46 +36,46 @@ class SharedFolder(AppTest):
                     return
                 said = process.communicate(timeout=TIME_LIMIT)[1]
             self.assertEqual(process.returncode, 0, said)
-            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            shutil.rmtree(self.folder / out, ignore_errors=True)
         self.fail("each run ended before it was stopped")
 
-    def share(self, program, *arguments):
-        self.assert_done(self.run_app(program, *arguments, "-o", "whole", "-q", "--no-figures"))
-        command = self.command(program, *arguments)
-        with self.halted(command) as first:
-            for use in ("--overwrite", "--resume"):
-                self.assert_refused(self.run_app(program, *arguments, "-o", "out", "-q", use),
-                                    "out: another program is using it", "--output")
+    def setUp(self):
+        super().setUp()
+        self.scenes = {"element_test": self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000))),
+                       "soil_column": self.write("column.toml", COLUMN),
+                       "biaxial": self.write("block.toml", FRICTION)}
+
+    def test_two_runs(self):
+        """Of all programs at once: what is refused waits for five seconds first."""
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            list(pool.map(self.share, self.scenes, self.scenes.values()))
+
+    def share(self, program, scene):
+        out, whole = f"{program}_out", f"{program}_whole"
+        self.assert_done(self.run_app(program, scene, *SAVED, "-o", whole, "-q", "--no-figures"))
+        command = self.command(program, scene, *SAVED)
+        with self.halted(command, out) as first, concurrent.futures.ThreadPoolExecutor() as pool:
+            for refused in pool.map(lambda use: self.run_command([*command, "-o", out, "-q", use]),
+                                    ("--overwrite", "--resume")):
+                self.assert_refused(refused, f"{out}: another program is using it", "--output")
             first.send_signal(signal.SIGCONT)
             self.assertEqual(first.wait(timeout=TIME_LIMIT), 0)
-        self.assertEqual(results(self.folder / "out"), results(self.folder / "whole"))
-        (self.folder / "out").rename(self.folder / "done")
-        with self.halted(command) as killed:
+        self.assert_same_results(out, whole)
+        (self.folder / out).rename(self.folder / f"{program}_done")
+        with self.halted(command, out) as killed:
             killed.kill()
-        self.assert_done(self.run_app(program, *arguments, "-o", "out", "-q", "--no-figures", "--resume"))
-        self.assertEqual(results(self.folder / "out"), results(self.folder / "whole"))
+        self.assert_done(self.run_app(program, scene, *SAVED, "-o", out, "-q", "--no-figures", "--resume"))
+        self.assert_same_results(out, whole)
 
     def test_a_folder_that_vanishes(self):
-        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
-        for program, arguments in (("element_test", (scene,)), ("soil_column", (self.write("column.toml", COLUMN),)),
-                                   ("biaxial", (self.write("block.toml", FRICTION),))):
-            with self.subTest(program), self.halted(self.command(program, *arguments, *SAVED)) as run:
+        for program, scene in self.scenes.items():
+            with self.subTest(program), self.halted(self.command(program, scene, *SAVED)) as run:
                 shutil.rmtree(self.folder / "out")
                 run.send_signal(signal.SIGCONT)
                 said = run.communicate(timeout=TIME_LIMIT)[1]
                 self.assertEqual(run.returncode, 1, said)
                 self.assertRegex(said, "No such file or directory|there is no such file")
                 self.assertIn("last good checkpoint: there is none", said)
-
-    def test_element_test(self):
-        scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
-        self.share("element_test", scene, *SAVED)
-
-    def test_biaxial(self):
-        self.share("biaxial", self.write("block.toml", FRICTION), *SAVED)
-
-    def test_soil_column(self):
-        self.share("soil_column", self.write("column.toml", COLUMN), *SAVED)
 
     def test_programs_that_start_at_once_share_no_session_of_mpi(self):
         """Open MPI 4 removes the folder that they share, now and then while another starts in it; 5 leaves it."""
@@ -101,7 +101,3 @@ class SharedFolder(AppTest):
         (self.folder / "out").mkdir()
         (self.folder / "out/.lock").touch()
         self.assert_done(self.run_app("element_test", scene, "-o", "out", "-q", "--no-figures"))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,7 +1,5 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column on a slope with a water table in the soil: what it leaves, on how many ranks and after which restarts."""
-import json
 import math
 import signal
 
@@ -9,7 +7,6 @@ import h5py
 import numpy as np
 
 from column_support import ColumnTest, SOIL, settings
-from support import main
 
 SLOPE = SOIL.replace('drainage = "coupled"', 'drainage = "coupled"\ntable = "1 m"\n[slope]\nangle = "5 deg"').replace(
     'amplitude = "0.1 g"', 'amplitude = "0.2 g"')
@@ -56,28 +53,12 @@ class Slope(ColumnTest):
         self.assertGreater(np.abs(rows["d1_u"]).max(), 100)
 
     def test_ranks_are_alike_to_the_bit(self):
-        options = settings(output__profile_interval="0.05 s", analysis__duration="0.3 s")
-        for n in (1, 3):
-            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options))
-            self.assert_same_files("on1", f"on{n}")
+        self.check_ranks(*settings(output__profile_interval="0.05 s", analysis__duration="0.3 s"))
 
     def test_one_mesh_over_ranks(self):
-        found = {}
-        for n in (1, 3):
-            self.assert_done(self.run_on_ranks(n, self.scene, "-o", f"on{n}", *DISTRIBUTED,
-                                               *settings(analysis__duration="0.3 s")))
-            found[n] = json.loads((self.folder / f"on{n}/summary.json").read_text(encoding="utf-8"))
-            for key in ("downslope", "end_gamma", "end_gamma_depth", "max_ru", "settlement"):
-                self.assert_near(found[n][key], found[1][key], 1e-9 * abs(found[1][key]),
-                                 f"round-off of sums over the ranks ({key})")
+        self.check_shared_mesh((3,), ("downslope", "end_gamma", "end_gamma_depth", "max_ru", "settlement"), 1e-9,
+                               *DISTRIBUTED, *settings(analysis__duration="0.3 s"))
 
     def test_goes_on_where_it_was_stopped(self):
-        options = settings(output__checkpoint="1e-9 min", output__profile_interval="0.1 s", analysis__duration="4 s")
-        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
-        self.assertIn("continue with --resume", self.stop_when_saved(self.scene, signal.SIGTERM, *options))
-        self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
-        self.assert_same_files("whole", "parts")
-
-
-if __name__ == "__main__":
-    main()
+        said = self.check_restart(signal.SIGTERM, *settings(output__profile_interval="0.1 s", analysis__duration="4 s"))
+        self.assertIn("continue with --resume", said)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A column that is killed and resumed, or run on several ranks, leaves the same files."""
 import contextlib
@@ -13,7 +12,7 @@ import h5py
 import numpy as np
 
 from column_support import ColumnTest, SCENES, history, settings
-from support import TIME_LIMIT, contents, main, wait_until
+from support import TIME_LIMIT, contents, wait_until
 
 
 class Resume(ColumnTest):
@@ -151,7 +150,7 @@ class MPIRanks(ColumnTest):
 
     def test_first_rank_cannot_write_its_last_rows(self):
         for last_file, more in (
-                ("profiles.h5", settings(analysis__duration="600 s", output__history_interval="10 s")),
+                ("profiles.h5", settings(analysis__duration="200 s", output__history_interval="10 s")),
                 ("history.h5", self.DISTRIBUTED + settings(analysis__duration="10 s", output__history_interval="1 s"))):
             with self.subTest(more), self.started(self.ranks(2, *more)) as process:
                 wait_until((self.folder / "out" / last_file).exists, last_file, process)
@@ -244,7 +243,3 @@ class MPIRanks(ColumnTest):
         self.assertEqual(result.stderr.count("error: "), 1)
         self.assertIn("not a folder", result.stderr)
         self.assertEqual(result.returncode, 2)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,7 +1,5 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column as a user runs it: its scenes, what a row holds, mistakes."""
-import json
 import re
 import shlex
 
@@ -9,7 +7,7 @@ import h5py
 import numpy as np
 
 from column_support import ColumnTest, SCENES, SOIL, settings, history
-from support import contents, main
+from support import contents
 
 
 class Scenes(ColumnTest):
@@ -17,8 +15,7 @@ class Scenes(ColumnTest):
         result = self.run_column(SCENES / f"{name}.toml", "-o", name, "--quiet", *options)
         self.assert_done(result)
         self.assert_no_warning(result)
-        folder = self.folder / name
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        folder, summary = self.folder / name, self.summary_of(name)
         self.assertIn((folder / "summary.txt").read_text(encoding="utf-8"), result.stdout)
         for file in ("scene.toml", "provenance.txt", "history.csv", "history.h5", "profiles.h5", "checkpoint/last.h5"):
             self.assertTrue((folder / file).exists(), file)
@@ -171,8 +168,7 @@ class Mistakes(ColumnTest):
         self.assertIsNotNone(words, result.stderr)
         self.assert_near(float(words[2]), 2 * 150 / 40, 0.05, "cells of 1 m, degree 2; digits of the message")
         self.assertIn(words[1], result.stdout)
-        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text(encoding="utf-8"))["warnings"][-1],
-                         words[1])
+        self.assertEqual(self.summary_of("out")["warnings"][-1], words[1])
         result = self.run_column(self.scene, "-o", "fine", "-q", *short, *settings(layer__0__cells=words[3],
                                                                                    layer__1__cells=4 * int(words[3])))
         self.assert_done(result)
@@ -200,7 +196,3 @@ class Mistakes(ColumnTest):
             output__checkpoint="1e-9 min"))
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertRegex(result.stderr, r"step \d+ \(t = [\d.]+ s\): unstable: .*\n.*last good checkpoint: out/check")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,20 +1,36 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Each number of a test's summary is of that run, in text, summary.json, report and figures, or is left out: scenes
-without a shear stage, with several, that ended at once, and contact laws without moments or friction."""
-import csv
+without a shear stage, with several, that ended at once, and contact laws without moments or friction. What ended a
+stage, lost control and the strength of a drained test are there; a resumed run says the same. Conditions that
+are met at once or never: tests/verification/path_ends_test.cpp."""
 import html
 import json
 import re
+import signal
 
 import numpy as np
 
-from support import AppTest, main, tiny_scene
+from report_support import page
+from support import AppTest, columns, tiny_scene
 
 CELL = 'domain = "periodic-cell"\npreparation_friction = "10 deg"'
 REST = '[[stage]]\nkind = "hold"\nbalance = 0.05\n'
 SHEAR = '[[stage]]\nkind = "undrained-simple-shear"\nstrain = 2e-4\n'
 OF_SHEAR = ("p0'", "strain rate", "largest", "lowest", "I_R at the start", "liquefaction", "reversals")
+PATH = '[[stage]]\nkind = "path"\nx.keep = "stress"\nz.keep = "stress"\n'
+LIMITED = PATH + 'max_steps = 400\nuntil = { strain = 0.05, q = "150 kPa" }\n'
+ENDED_EARLY = ("stage 0 (path): ended by max_steps = 400 before any of its conditions was met: until.strain = 5 % (")
+CYCLIC_PATH = """[[stage]]
+kind = "path"
+x.keep = "volume"
+z.keep = "volume"
+turn = { low = "-30 kPa", high = "30 kPa" }
+until = { cycles = 2, strain = 0.1 }
+"""
+DRAINED = '[[stage]]\nkind = "drained"\nstrain = 0.02\nstrain_rate = "{rate} 1/s"\n'
+LOSS = "stage 0: sigma_x off its target by more than 1 %"
+STRENGTH = ('[[stage]]\nkind = "drained"\nstrain = 0.02\nstrain_rate = "1 1/s"\n'
+          '[[stage]]\nkind = "constant-p"\ndirection = "extension"\nstrain = 0.01\nstrain_rate = "1 1/s"\n')
 
 
 class Summary(AppTest):
@@ -25,13 +41,10 @@ class Summary(AppTest):
         result = self.run_app("element_test", self.write(f"{name}.toml", scene), "-o", name, *arguments)
         self.assert_done(result)
         self.text = (self.folder / name / "summary.txt").read_text(encoding="utf-8")
-        self.numbers = json.loads((self.folder / name / "summary.json").read_text(encoding="utf-8"))
+        self.numbers = self.summary_of(name)
         rows = [f"  {label:<25}{text}\n" for label, text in self.numbers["rows"]]
         self.assertEqual(self.text, "\ntiny\n" + "".join(rows))
-        with open(self.folder / name / "history.csv", newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        self.history = {cell.split(" ")[0]: np.array([float(row[cell]) for row in rows])
-                        for cell in (rows[0] if rows else ())}
+        self.history = columns(self.folder / name / "history.csv")
 
     def line(self, name):
         """What the summary says of a name, or None."""
@@ -103,7 +116,7 @@ class Summary(AppTest):
         loose = 'preparation_friction = "30 deg"'
         stages = ('[[stage]]\nkind = "undrained-monotonic"\nstrain = 1e-5\n'
                   '[[stage]]\nkind = "undrained-monotonic"\nstrain = 0.01\nliquefaction_ratio = 0.9\n')
-        self.leave("ratio", stages, "--set", "motion.strain_rate=10 1/s", specimen=loose)
+        self.leave("ratio", stages, "--no-figures", "--set", "motion.strain_rate=10 1/s", specimen=loose)
         event = self.numbers["liquefaction"]
         self.assertEqual(event["ratio"], 0.9)
         below = np.flatnonzero(self.history["p"] / self.numbers["p0"] < 0.9)
@@ -113,32 +126,27 @@ class Summary(AppTest):
         self.assert_close(event["IR_before"], self.history["IR"][before], 1e-8, "digits of the history")
         self.assertGreaterEqual(event["p_ratio_before"], 0.9)
         self.assertIsNone(self.line("cycles to liquefaction"), "it had none")
-        report = (self.folder / "ratio/report.html").read_text(encoding="utf-8")
+        report = page(self.folder / "ratio")
         self.assertIn("fell below 0.9 ", report)
         self.assertIn("in the row before ", report)
         for name in ("IR_before", "p_ratio_before"):  # as a version left it that did not have them
             del self.numbers["liquefaction"][name]
         (self.folder / "ratio/summary.json").write_text(json.dumps(self.numbers), encoding="utf-8")
-        self.assert_done(self.run_app("isostat", "report", "ratio"))
-        report = (self.folder / "ratio/report.html").read_text(encoding="utf-8")
+        report = page(self.folder / "ratio")
         self.assertIn("fell below 0.9 ", report)
         self.assertNotIn("in the row before ", report)
 
     def test_results_of_a_version_without_rows_are_reported(self):
         """Their text as it is, and without what that version did not keep as numbers; without the text the numbers."""
-        self.leave("old", SHEAR, "--set", "motion.strain_rate=2 1/s")
+        self.leave("old", SHEAR, "--no-figures", "--set", "motion.strain_rate=2 1/s")
         for name in ("rows", "strain_rate", "inertial_number", "max_indicator"):
             del self.numbers[name]
         (self.folder / "old/summary.json").write_text(json.dumps(self.numbers), encoding="utf-8")
-        result = self.run_app("isostat", "report", "old")
-        self.assert_done(result)
-        self.assertNotIn("not written", result.stderr)
-        report = html.unescape((self.folder / "old/report.html").read_text(encoding="utf-8"))
+        report = html.unescape(page(self.folder / "old"))
         self.assertIn(self.text.strip() + "</pre>", report)
         self.assertIn("fixed at 2 1/s, not controlled.", report)
         (self.folder / "old/summary.txt").unlink()
-        self.assert_done(self.run_app("isostat", "report", "old"))
-        report = (self.folder / "old/report.html").read_text(encoding="utf-8")
+        report = page(self.folder / "old")
         self.assertIn(f'<th scope="row">grains</th><td>{self.numbers["grains"]}</td>', report)
 
     def test_a_contact_counts_as_yielding_within_the_margin(self):
@@ -167,5 +175,158 @@ class Summary(AppTest):
             self.assert_at_the_end()
 
 
-if __name__ == "__main__":
-    main()
+class EarlyEnd(AppTest):
+    def scene(self, name, stages):
+        return self.write(f"{name}.toml", tiny_scene(stages=stages))
+
+    def test_a_stage_that_its_limit_ended_says_so(self):
+        result = self.run_test(self.scene("limited", LIMITED + REST), "-o", "limited")
+        self.assert_done(result)
+        self.assertIn("warning: " + ENDED_EARLY, result.stderr)
+        self.assertIn("ended early              " + ENDED_EARLY, result.stdout)
+        (end,) = self.summary_of("limited")["ended_early"]
+        self.assertEqual((end["stage"], end["times"], end["at_once"]), (0, 1, False))
+        self.assertIn("until.q = 150 kPa (", end["text"])
+
+    def test_what_ended_a_stage_is_said(self):
+        stages = PATH + 'max_steps = 400\nuntil.strain = 1e-4\n' + PATH + "max_steps = 50\n"
+        result = self.run_test(self.scene("whole", stages), "-o", "whole")
+        self.assert_done(result)
+        self.assertNotIn("warning", result.stderr)
+        self.assertNotIn("ended early", result.stdout)
+        self.assertIn("ended                    stage 0 (path): ended by until.strain = 0.01 % (", result.stdout)
+        self.assertIn("ended                    stage 1 (path): ended by max_steps = 50\n", result.stdout)
+        numbers = self.summary_of("whole")
+        self.assertEqual(numbers["ended_early"], [])
+        self.assertEqual([(end["stage"], end["by"], end["early"]) for end in numbers["ended"]],
+                         [(0, "strain", False), (1, "max_steps", False)])
+
+    def test_a_default_that_comes_before_what_was_asked_for_is_named(self):
+        stage = '[[stage]]\nkind = "undrained-cyclic"\ndeviator_amplitude = "40 kPa"\nuntil.cycles = 60\n'
+        result = self.run_test(self.scene("default", stage), "-o", "default", "--set", "stage.0.until.strain=1e-4")
+        self.assert_done(result)
+        self.assertRegex(result.stdout, r"ended by until.strain = 0.01 % \(0.01\d* %\), before until.cycles = 60 "
+                         r"\([\d.]+ reached\), until.reversals_after_liquefaction = 10 \(not liquefied\)")
+
+    def test_a_resumed_run_says_the_same(self):
+        stages, often = LIMITED + PATH + "until.strain = 0.005\n", ("--set", "output.checkpoint=0.0005 min")
+        scene = self.scene("resumed", stages)
+        self.assert_done(self.run_test(scene, "-o", "whole", *often))
+        self.run_and_stop(0.05, signal.SIGKILL, (self.folder / "parts/checkpoint/last.h5", True), scene, "-o", "parts",
+                          *often)
+        self.assert_done(self.run_test(scene, "-o", "parts", "--resume", *often))
+        self.assertEqual(self.summary_of("parts")["ended_early"], self.summary_of("whole")["ended_early"])
+        self.assertEqual(len(self.summary_of("parts")["ended_early"]), 1)
+
+    def test_cycles_of_a_path_have_a_response(self):
+        result = self.run_test(self.scene("cyclic", CYCLIC_PATH), "-o", "cyclic")
+        self.assert_done(result)
+        self.assertIn("  cyclic response          ", result.stdout)
+        response = self.summary_of("cyclic")["cyclic_response"]
+        self.assertIn(response["name"],
+                      ("flow", "limited flow", "cyclic mobility", "plastic strain accumulation", "no failure"))
+        self.assertTrue(response["stress_reversal"])
+        self.assert_near(response["load_max"], 30e3, 3e3, "what a step of 200 grains adds at a turn")
+
+    def test_a_bias_that_cannot_hold_is_refused_when_the_scene_is_read(self):
+        scene = self.scene("bias", CYCLIC_PATH.replace("-30 kPa", "10 kPa"))
+        self.assert_refused(self.run_app("element_test", scene, "--validate"), "bias.toml:",
+                            "stage.0.turn.low = 10 kPa", "isotropic consolidation to 200 kPa", "turn.high = 30 kPa")
+
+    def test_cycles_of_stages_are_counted(self):
+        stages = (PATH + "until.strain = 2e-4\n" + PATH +
+                  'direction = "extension"\nuntil.strain = 2e-4\nmax_steps = 5\n'
+                  '[[stage]]\nkind = "repeat"\nstages = 2\ntimes = 3\n')
+        result = self.run_test(self.scene("cycles", stages), "-o", "cycles")
+        self.assert_done(result)
+        for part in ("stage 0 (path), cycle 2 of 3 of stages 0 to 1", "repeated                 stages 0 to 1, 3 times",
+                     "stage 1 (path), cycle 1 of 3 of stages 0 to 1: ended by max_steps = 5", "3 times in all"):
+            self.assertIn(part, result.stderr + result.stdout)
+        rows = columns(self.folder / "cycles/history.csv")
+        self.assertEqual(sorted(set(zip(rows["done"], rows["stage"]))),
+                         [(0, 0), (1, 1), (2, 0), (3, 1), (4, 0), (5, 1)])
+        report = page(self.folder / "cycles")
+        self.assertIn("Stage 0 (path), cycle 1 of 3 of stages 0 to 1:", report)
+        self.assertIn("ended by max_steps = 5 before any of its conditions was met", report)
+
+    def test_a_condition_that_is_met_when_it_begins_is_told(self):
+        result = self.run_test(self.scene("met", PATH + 'until.p = "200 kPa"\n' + REST), "-o", "met")
+        self.assert_done(result)
+        self.assertIn("warning: stage 0 (path): ended in its first step, because one of its conditions was met when it "
+                      "began: until.p = 200 kPa (", result.stderr)
+        self.assertTrue(self.summary_of("met")["ended_early"][0]["at_once"])
+
+
+class Control(AppTest):
+    def scene(self, rate):
+        return self.write(f"scene_{rate}.toml", tiny_scene(stages=DRAINED.format(rate=rate)))
+
+    def losses(self, folder):
+        return self.summary_of(folder)["control_lost"]
+
+    def test_a_test_that_keeps_its_stresses_says_nothing(self):
+        result = self.run_test(self.scene(0.5), "-o", "slow")
+        self.assert_done(result)
+        self.assertNotIn("control lost", result.stderr + result.stdout)
+        self.assertEqual(self.losses("slow"), [])
+
+    def test_lost_control_is_told(self):
+        result = self.run_test(self.scene(60), "-o", "fast")
+        self.assert_done(result)
+        self.assertIn("warning: control lost: " + LOSS, result.stderr)
+        self.assertIn("control lost             " + LOSS, result.stdout)
+        lost = [loss for loss in self.losses("fast") if loss["quantity"] == "sigma_x"]
+        self.assertEqual(len(lost), 1)
+        self.assertEqual(lost[0]["stage"], 0)
+        self.assert_close(lost[0]["target"], 200e3, 0.01, "the pressure of the preparation, within the servo's 0.2 %")
+        self.assertGreater(abs(lost[0]["worst"] / lost[0]["target"] - 1), 0.01)
+        self.assertGreater(lost[0]["share"], 0.05)
+
+    def test_lost_control_may_be_an_error(self):
+        result = self.run_test(self.scene(60), "-o", "error", "--set", "control.on_loss=error")
+        self.assertEqual(result.returncode, 1, result.stdout)
+        for part in ("failed: step ", "control lost: " + LOSS, "control.on_loss", "checkpoint"):
+            self.assertIn(part, result.stderr)
+
+    def test_a_resumed_run_says_the_same(self):
+        scene, often = self.scene(60), ("--set", "output.checkpoint=1e-9 min")
+        self.assert_done(self.run_test(scene, "-o", "whole", *often))
+        self.run_and_stop(0.05, signal.SIGKILL, (self.folder / "parts/checkpoint/last.h5", True), scene, "-o", "parts",
+                          *often)
+        self.assert_done(self.run_test(scene, "-o", "parts", "--resume", *often))
+        self.assertEqual(self.losses("parts"), self.losses("whole"))
+
+
+class DrainedReport(AppTest):
+    def test_strength_in_history_summary_and_figure(self):
+        self.result = self.run_test(self.write("scene.toml", tiny_scene(stages=STRENGTH)), "-o", "run")
+        self.assert_done(self.result)
+        self.numbers = self.summary_of("run")
+        self.history = columns(self.folder / "run/history.csv")
+        self.check_strength()
+        self.check_summary_and_figure()
+
+    def check_strength(self):
+        """That of the history."""
+        h = self.history
+        self.assertEqual([stage["stage"] for stage in self.numbers["drained"]], [0, 1])
+        for stage in self.numbers["drained"]:
+            rows = h["stage"] == stage["stage"]
+            ratio = (h["q"] / h["p"])[rows]
+            volume = (h["eps_x"] + h["eps_y"] + h["eps_z"])[rows]
+            peak = ratio[np.argmax(abs(ratio))]
+            self.assert_close(stage["q_over_p_peak"], peak, 0.05, "a mean over 1 % of the strain, a row scatters more")
+            sine = 3 * abs(stage["q_over_p_peak"]) / (6 + stage["q_over_p_peak"])
+            self.assert_close(stage["friction_peak_deg"], np.degrees(np.arcsin(sine)), 1e-6, "digits of the file")
+            self.assert_near(stage["eps_v_end"], volume[-1], 1e-12, "digits of the file")
+            self.assert_near(stage["eps_v_max"], volume.max(), 1e-12, "digits of the file")
+        self.assertIsNotNone(self.numbers["drained"][0]["dilatancy_deg"])
+        self.assertIsNone(self.numbers["drained"][1]["dilatancy_deg"], "of compression alone")
+
+    def check_summary_and_figure(self):
+        for name in ("peak friction", "end friction", "largest dilatancy", "volumetric strain"):
+            self.assertIn(f"  {name:<25}", self.result.stdout)
+        report = page(self.folder / "run", "fig_dilatancy")
+        self.assertTrue((self.folder / "run/figures/fig_dilatancy.png").stat().st_size > 10000)
+        for part in ("peak friction", "fig_dilatancy"):
+            self.assertIn(part, report)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What a system may put in the way of a run: quotas, limits of the size of files, folders that cannot be written, a
 calendar that jumps, and a program that draws figures and is killed."""
@@ -11,7 +10,7 @@ import subprocess
 import time
 
 from failing_runs import OUTPUT, SAVED, SHORT_TEST, FailingRuns
-from support import TIME_LIMIT, children, contents, main, results, wait_until
+from support import TIME_LIMIT, children, contents, results, wait_until
 
 
 class SystemLimits(FailingRuns):
@@ -118,7 +117,3 @@ class SystemLimits(FailingRuns):
         after = contents(self.folder / "out")
         self.assertEqual({name: after[name] for name in numbers if not name.startswith("figures")},
                          {name: data for name, data in numbers.items() if not name.startswith("figures")})
-
-
-if __name__ == "__main__":
-    main()

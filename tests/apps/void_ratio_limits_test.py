@@ -1,9 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The program void_ratio_limits on a few grains: what it leaves behind, and its refusals."""
-import json
 
-from support import AppTest, contents, main, tiny_scene
+from support import AppTest, contents, tiny_scene
 
 LIMITS = tiny_scene(specimen='preparation_friction = "0 deg"\npressure = "100 kPa"', motion="damping = 0.4",
                     stages="# none")
@@ -19,7 +17,7 @@ class VoidRatioLimits(AppTest):
         for word in ("e_min", "e_max", "0.568", "0.841", "0.677", "1.054", "contact modulus",
                      "its void ratio means little"):
             self.assertIn(word, result.stdout)
-        written = json.loads((self.folder / "out/limits.json").read_text(encoding="utf-8"))
+        written = self.summary_of("out", "limits.json")
         limits = {name: item["value"] for name, item in written.items()}
         header, row = (self.folder / "out/limits.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual([cell.split(" (")[0] for cell in header.split(",")], list(limits))
@@ -38,7 +36,7 @@ class VoidRatioLimits(AppTest):
         result = self.run_app("void_ratio_limits", scene, "-o", "out", *QUICK, "--set", "specimen.domain=periodic-cell",
                               "--set", "grading.grains=400", "--set", "grading.truncate=[10, 90]")
         self.assert_done(result)
-        limits = json.loads((self.folder / "out/limits.json").read_text(encoding="utf-8"))
+        limits = self.summary_of("out", "limits.json")
         self.assertEqual(limits["e_min"]["value"], limits["e_min_inside"]["value"])
         self.assertLess(limits["e_min"]["value"], limits["e_max_inside"]["value"])
         self.assert_below(limits["dense_unbalanced"]["value"], 5e-5, "at rest, as every specimen")
@@ -56,7 +54,3 @@ class VoidRatioLimits(AppTest):
         self.assertFalse((self.folder / "out").exists())
         stages = self.write("stages.toml", tiny_scene(specimen='preparation_friction = "0 deg"'))
         self.assert_refused(self.run_app("void_ratio_limits", stages, "-o", "out"), "stages.toml", "stage")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """isostat calibrate finds known parameters again: drained tests at a known friction, rolling limit and modulus, on
 specimens of other seeds than those it is given. Not part of the usual tests: ctest --preset long, half an hour on two
@@ -16,14 +15,13 @@ import json
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import unittest
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-BINARIES = pathlib.Path(sys.argv.pop(1)).resolve()
+from support import BIN, ROOT
+
 SCENE = ROOT / "apps/scenes/calibrate/sand.toml"
 TRUTH = {"contact.friction": 22.0, "contact.rolling.limit": 0.2, "contact.young": 0.2}  # deg, -, GPa
 ROLLING_STIFFNESS = 1.0
@@ -97,7 +95,7 @@ def run_one(folder, name, preparation, seed):
                 "specimen.preparation_friction": f"{preparation} deg", "stage.0.strain": STRAIN,
                 "motion.inertial_number": RATE}
     out = folder / "truth" / f"{name}_{seed}"
-    subprocess.run([BINARIES / "element_test", SCENE, "-o", out, "--threads", "1", "--no-figures", "--quiet",
+    subprocess.run([BIN / "element_test", SCENE, "-o", out, "--threads", "1", "--no-figures", "--quiet",
                     *(word for key, value in settings.items() for word in ("--set", f"{key}={value}"))],
                    check=True, stdout=subprocess.DEVNULL)
     with open(out / "history.csv", newline="", encoding="utf-8") as file:
@@ -136,7 +134,7 @@ class Recovery(unittest.TestCase):
     def calibrate(self, name, start, bounds, sizes):
         plan, out = self.folder / f"{name}.toml", self.folder / name
         plan.write_text(plan_text(self.scene, start, bounds, sizes), encoding="utf-8")
-        subprocess.run([BINARIES / "isostat", "calibrate", plan, "-j", str(CORES), "-o", out], check=True)
+        subprocess.run([BIN / "isostat", "calibrate", plan, "-j", str(CORES), "-o", out], check=True)
         result = json.loads((out / "calibrate.json").read_text(encoding="utf-8"))
         found = {p["key"]: float(p["best"].split()[0]) for p in result["parameters"]}
         print(name, {key: (found[key], TRUTH[key]) for key in TRUTH}, result["misfit_start"], result["misfit_best"])
@@ -149,7 +147,3 @@ class Recovery(unittest.TestCase):
                            ("contact.young", 0.2 * TRUTH["contact.young"])):
             with self.subTest(key):
                 self.assertLessEqual(abs(many[key] - TRUTH[key]), limit)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -15,7 +15,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
-from support import BIN, CYCLIC, MONOTONIC, tiny_scene  # noqa: E402  (the path comes first)
+from support import CYCLIC, MONOTONIC, tiny_scene  # noqa: E402  (the path comes first)
 from column_support import history  # noqa: E402
 from failing_runs import COLUMN  # noqa: E402
 
@@ -48,9 +48,7 @@ def compare(one, other):
 
 
 def main():
-    bins = [BIN, *(pathlib.Path(word).resolve() for word in sys.argv[1:])]
-    if BIN is None or len(bins) < 2:
-        sys.exit(__doc__)
+    bins = [pathlib.Path(word).resolve() for word in sys.argv[1:]]
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         differ = 0

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs that are killed (SIGKILL) at random moments, again and again, and continue with another number of threads, jobs
 or ranks: the final bytes are those of an undisturbed run. Not part of the usual tests: ctest --preset
@@ -8,21 +7,18 @@ ISOSTAT_KILLS   of each program (20)          ISOSTAT_SEED    draws the same mom
 """
 import contextlib
 import os
-import pathlib
 import random
 import shutil
 import signal
 import subprocess
-import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
-from biaxial_test import CELL, FEW, FRICTION, GRAINS as BLOCK  # noqa: E402  (the path comes first)
-from calibrate_test import LABORATORY, SCENE, plan_text  # noqa: E402
-from column_support import settings  # noqa: E402
-from failing_runs import COLUMN, SAVED  # noqa: E402
-from grain_column_test import GRAINS as COLUMN_OF_GRAINS  # noqa: E402
-from support import CYCLIC, AppTest, children, main, results, tiny_scene  # noqa: E402
+from biaxial_test import CELL, FEW, FRICTION, GRAINS as BLOCK
+from calibrate_test import LABORATORY, SCENE, plan_text
+from column_support import settings
+from failing_runs import COLUMN, SAVED
+from grain_column_test import GRAINS as COLUMN_OF_GRAINS
+from support import CYCLIC, ROOT, AppTest, children, results, tiny_scene
 
 KILLS = int(os.environ.get("ISOSTAT_KILLS", "20"))
 SEED = int(os.environ.get("ISOSTAT_SEED", time.time_ns() % 1000000))
@@ -33,7 +29,6 @@ RANKS = ("mpirun", "--oversubscribe", "-n")
 class Kills(AppTest):
     def setUp(self):
         super().setUp()
-        os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
         self.draw = random.Random(SEED)
 
     def run_to(self, command, wait):
@@ -116,7 +111,7 @@ class Kills(AppTest):
 
     def test_column_of_grains(self):
         scene = self.write("grains.toml", COLUMN_OF_GRAINS.format(cache=self.folder))
-        library = pathlib.Path(__file__).resolve().parents[2] / "apps/scenes/rve_library.toml"
+        library = ROOT / "apps/scenes/rve_library.toml"
         self.assert_done(self.run_app(
             "isostat", "library", library, "-o", "library.h5", "--pressures", "30 kPa", "-q",
             *settings(grading__grains=250, grading__cloud_edge="2.924 mm", specimen__density_tolerance=0.04)))
@@ -130,7 +125,3 @@ class Kills(AppTest):
         scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
         self.assert_done(self.run_app("isostat", "library", scene, *FEW, "-n", "2", "-o", "library.h5", "-q"))
         self.kill("biaxial", (self.write("block.toml", BLOCK), *SAVED, "-q", "--no-figures"), self.folder_of_run)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,20 +1,16 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The default's distance to a slow test: cyclic tests on 20 specimens, box and cell, against a tenth of the
 rate. Not part of the usual tests: ctest --preset long, some ten minutes on two cores."""
 import pathlib
-import sys
 import tempfile
 import unittest
 
 import numpy as np
 
-BIN = pathlib.Path(sys.argv.pop(1)).resolve()
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2]), str(BIN.parent / "python")]
-from isostat import campaign  # noqa: E402  (the folders come first)
-from isostat.campaign.study import Store  # noqa: E402
-from studies.ensembles import mean_and_interval  # noqa: E402
-from studies.free_grains import plan, tables  # noqa: E402
+from isostat import campaign
+from isostat.campaign.study import Store
+from studies.ensembles import mean_and_interval
+from studies.free_grains import plan, tables
 
 SEEDS = range(1, 21)
 CYCLES = 1.0  # what the mean may differ by, 95 % interval included; 0.71 and 0.59 were measured
@@ -51,7 +47,3 @@ class SlowTests(unittest.TestCase):
                 self.assertLess(abs(cycles) + half, CYCLES)
                 self.assertLess(path, PATH[domain])
                 self.assertLess(steps, STEPS)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A packing that liquefies and stiffens in each half of a cycle, and one that rests, for 1e7 steps each or as many as
 asked for, in pieces that end by SIGTERM and continue by --resume: memory, volume, energy, momentum and the size of the
@@ -12,15 +11,13 @@ import os
 import pathlib
 import signal
 import subprocess
-import sys
 import time
 
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "apps"))
-from column_support import history  # noqa: E402  (the path comes first)
-from support import AppTest, main  # noqa: E402  (the path comes first)
+from column_support import history
+from support import AppTest
 
 STEPS = int(float(os.environ.get("ISOSTAT_SOAK_STEPS", "1e7")))
 MINUTES = float(os.environ.get("ISOSTAT_SOAK_MINUTES", "0.5"))
@@ -119,7 +116,3 @@ class Soak(AppTest):
         self.assert_below(np.ptp(e), 1e-14, "round-off")
         for name, values in numbers.items():
             self.assertEqual(np.count_nonzero((values > 0) & (values < 1e-300)), 0, name)
-
-
-if __name__ == "__main__":
-    main()

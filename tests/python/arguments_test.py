@@ -1,7 +1,5 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Arguments of a wrong type or shape are refused by name, with what was given; no signatures of C++ are listed."""
-import unittest
 
 import numpy as np
 
@@ -97,7 +95,3 @@ class ArgumentsTest(ToleranceTest):
         self.expect("overwrite and resume exclude each other", isostat.run, scene, "never", overwrite=True, resume=True)
         self.expect("overwrite and append exclude each other", isostat.write_library, "l.h5", [], overwrite=True,
                     append=True)
-
-
-if __name__ == "__main__":
-    unittest.main()

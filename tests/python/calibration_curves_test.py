@@ -1,10 +1,8 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Laboratory files that isostat calibrate takes and refuses, and the misfit of curves."""
 import math
 import pathlib
 import random
-import unittest
 from types import SimpleNamespace
 
 import numpy as np
@@ -155,7 +153,3 @@ class Misfit(CalibrationTest):
         curves = [SimpleNamespace(weight=w, blind=b) for w, b in ((3, False), (1, False), (1, True))]
         plan = SimpleNamespace(curve=curves)
         self.assert_near(total_misfit([0.1, 0.2, 9], plan), math.sqrt((3 * 0.01 + 0.04) / 4), 1e-12, ROUND_OFF)
-
-
-if __name__ == "__main__":
-    unittest.main()

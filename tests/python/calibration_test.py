@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The parts of isostat calibrate: plans, parameters and scenes of trials, search. Laboratory files and the misfit are
 in calibration_curves_test.py."""
@@ -6,19 +5,18 @@ import math
 import pathlib
 import random
 import tomllib
-import unittest
 from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
 
-from package import FolderTest, isostat
+from package import ROOT, FolderTest, isostat
 from isostat.campaign import folder
 from isostat.campaign.calibrate import (ALGORITHMS, BudgetUsed, Folder, keys, plan as plans, search,
                                         sobol_design)
 from isostat.campaign.calibrate.scenes import SceneMaker
 
-APPS = pathlib.Path(__file__).resolve().parents[2] / "apps"
+APPS = ROOT / "apps"
 SAND = APPS / "scenes/calibrate/sand.toml"
 CURVE = '[[curve]]\nfile = "TMD3.csv"\ntest = "drained"\n'
 FRICTION = '[[parameter]]\nkey = "contact.friction"\nbounds = ["10 deg", "35 deg"]\n'
@@ -191,6 +189,7 @@ class Parameters(CalibrationTest):
         key = 'key = "contact.friction"\n'
         for parameter, *parts in (
                 ('key = "contact.frction"\nbounds = [0, 1]\n', "plan.toml:5", "Did you mean contact.friction?"),
+                ('key = "nothing.alike"\nbounds = [0, 1]\n', "element_test --print-defaults"),
                 ('key = "grading.curve"\nbounds = [0, 1]\n', "plan.toml:5", "is not a number"),
                 ('key = "stage.0.strain"\nbounds = [0.1, 0.2]\n', "plan.toml:5", "is set by [[curve]]"),
                 ('key = "specimen.pressure"\nbounds = ["1 kPa", "2 kPa"]\n', "is set by [[curve]]"),
@@ -300,7 +299,3 @@ class Search(CalibrationTest):
         self.assertEqual(sobol_design(3, 4), [[0.5, 0.5, 0.5], [0.75, 0.25, 0.25], [0.25, 0.75, 0.75],
                                               [0.375, 0.375, 0.625]])
         self.assertEqual(sobol_design(2, 0), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs of a campaign and what is in their way: another process, a user's files, another scene, a damaged checkpoint,
 a signal from outside; and the folder of a campaign."""
@@ -6,7 +5,6 @@ import concurrent.futures
 import os
 import signal
 import threading
-import unittest
 
 from package import SMALL_SCENE, FolderTest, isostat
 from isostat import campaign
@@ -109,7 +107,3 @@ class CampaignTest(FolderTest):
         for name, parts in (("nothere.json", "does not exist"), ("pigeons", "is not an engine")):
             with self.assertRaisesRegex(isostat.InputError, parts), campaign.engine(name):
                 pass
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """A column from Python whose layers have materials that are written in Python."""
 import os
@@ -8,7 +7,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import unittest
 
 import numpy as np
 
@@ -302,7 +300,3 @@ class ColumnTest(ToleranceTest):
                              text=True, check=False)
         self.assertEqual(run.returncode, 2)
         self.assertIn("isostat.column.run(", run.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

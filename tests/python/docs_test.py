@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The programs of docs/python.md, one after another as a reader would type them, on smaller packings."""
 import contextlib
@@ -11,9 +10,9 @@ import unittest
 
 import matplotlib
 
-from package import isostat  # noqa: F401  (so that the text's import finds it)
+from support import ROOT
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/python.md"
+PAGE = ROOT / "docs/python.md"
 SMALLER = {'"grains": 500, "cloud_edge": "3.684 mm"': '"grains": 200, "cloud_edge": "2.7 mm"',
            "0.01}": "0.002}", "0.015}": "0.003}", "every=1000": "every=5000",
            '"duration": "2 s"': '"duration": "0.3 s"'}
@@ -38,7 +37,3 @@ class DocsTest(unittest.TestCase):
             os.chdir(before)
         self.assertIn("[", printed.getvalue())
         self.assertEqual(names["rve"].stiffness().shape, (6, 6))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,8 +1,6 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """From a scene to a column of packings without leaving Python: libraries of specimens, and a single specimen as one."""
 import pickle
-import unittest
 
 import numpy as np
 
@@ -73,7 +71,3 @@ class LibraryTest(FolderTest):
             column.run(column.ColumnScene({**COLUMN, "title": "two", "grains": {"library": single, "realisations": 2}}),
                        self.folder / "too_many")
         self.assertTrue(self.run_column(library, "two", realisations=2).finished)
-
-
-if __name__ == "__main__":
-    unittest.main()

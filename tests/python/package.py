@@ -2,16 +2,12 @@
 """What the tests of the Python package share: the package from the build tree whose programs are given."""
 import pathlib
 import shutil
-import sys
 import tempfile
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / "apps")]
-from support import BIN as BINARIES, TIME_LIMIT, ToleranceTest  # noqa: E402  (the path comes first)
+import isostat
+from support import BIN as BINARIES, ROOT, TIME_LIMIT, ToleranceTest
 
-sys.path[:0] = [str(BINARIES.parent / "python")]
-import isostat  # noqa: E402
-
-__all__ = ["BINARIES", "TIME_LIMIT", "FolderTest", "ToleranceTest", "isostat", "packing_in_cell"]
+__all__ = ["BINARIES", "TIME_LIMIT", "ROOT", "FolderTest", "ToleranceTest", "isostat", "packing_in_cell"]
 
 CONTACT = {"friction": "18 deg", "rolling": {"stiffness": 0.3, "limit": 0.5}, "twisting": {"stiffness": 0.3}}
 SMALL_SCENE = """title = "small"

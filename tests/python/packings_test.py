@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of other programs: what is read of LAMMPS, YADE, CSV and VTP, what is refused and where, and damaged files."""
 import gzip
@@ -6,7 +5,6 @@ import math
 import pathlib
 import random
 import tempfile
-import unittest
 import warnings
 
 import numpy as np
@@ -318,7 +316,3 @@ class PackingsTest(ToleranceTest):
                 again = isostat.read_packing(self.folder / "again.csv", anyway=True).snapshot
             self.assert_same(again, found, "positions radii ids velocities spins box cell")
         self.assertGreater(taken, 50)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,9 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The representative volume element from Python: strain in, stress out, there and back."""
 import signal
 import threading
-import unittest
 
 import numpy as np
 
@@ -118,7 +116,3 @@ class RveTest(ToleranceTest):
         box = isostat.Snapshot.from_spheres([[1e-3] * 3], [1e-3], box=[[0, 0, 0], [2e-3] * 3])
         with self.assertRaises(isostat.InputError):
             isostat.Rve(box)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,11 +1,9 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Scenes in Python: file, text, dictionary and keywords are the same scene, and wrong ones are refused in words."""
 import copy
 import pathlib
 import pickle
 import tempfile
-import unittest
 
 import numpy as np
 
@@ -90,7 +88,3 @@ class SceneTest(ToleranceTest):
         law = isostat.Scene(TEXT).law
         self.assertEqual(law.parameters["young"], 1e10)
         self.assertIn("friction", law.parameters)
-
-
-if __name__ == "__main__":
-    unittest.main()

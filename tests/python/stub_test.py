@@ -1,14 +1,12 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The stubs name what the compiled part has, nothing more and nothing less; and all of it says what it is."""
 import ast
 import importlib
-import pathlib
 import unittest
 
-from package import isostat
+from package import ROOT, isostat
 
-STUBS = pathlib.Path(__file__).resolve().parents[2] / "python/isostat"
+STUBS = ROOT / "python/isostat"
 OWN = {"__init__", "__bool__", "__len__"}  # special names that a stub may have
 
 
@@ -42,7 +40,3 @@ class StubTest(unittest.TestCase):
                         if not member.startswith("_") and not (getattr(owner, member).__doc__ or "").strip()]
         undocumented += [name for name in isostat.__all__ if not (getattr(isostat, name).__doc__ or "").strip()]
         self.assertEqual(undocumented, [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,25 +1,28 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Several threads, and several processes, call the package at once: no crash, and the bits of one that is alone.
 
 REPEATS in the environment makes it longer: REPEATS=20 in place of 3, with 2, 3 and 4 threads in place of 3."""
+import concurrent.futures
+import copy
+import multiprocessing
 import os
 import pathlib
+import pickle
 import subprocess
-import sys
 import tempfile
 import threading
 import unittest
 
 import numpy as np
 
-from package import BINARIES, CONTACT, isostat
+from package import BINARIES, CONTACT, SMALL_SCENE, FolderTest, isostat
 
 REPEATS = int(os.environ.get("REPEATS", "3"))
 THREADS = (2, 3, 4) if REPEATS > 3 else (3,)
 SCENE = isostat.Scene(grading={"grains": 100, "cloud_edge": "2.2 mm"}, contact={**CONTACT, "young": "100 MPa"},
                       specimen={"domain": "periodic-cell", "preparation_friction": "10 deg", "pressure": "50 kPa"},
                       stage=[{"kind": "drained", "strain": 1e-4}])
+SMALL = SMALL_SCENE + "max_steps = 300\n"
 SHEAR = np.array([[0, 1e-5, 0], [0, 0, 0], [0, 0, 0]])
 COLUMN = """title = "a pulse"
 [water]
@@ -101,9 +104,10 @@ def at_once(names, repeats):
 class ThreadsTest(unittest.TestCase):
     def call(self, names):
         """In a process of its own: a crash is its exit code."""
-        done = subprocess.run([sys.executable, __file__, BINARIES, "--at-once", *names], capture_output=True, text=True,
-                              check=False)
-        self.assertEqual(done.returncode, 0, f"{names}: {done.stderr[-2000:]}")
+        process = multiprocessing.get_context("spawn").Process(target=at_once, args=(names, REPEATS))
+        process.start()
+        process.join()
+        self.assertEqual(process.exitcode, 0, names)
 
     def test_threads_of_one_kind(self):
         for name in TASKS:
@@ -129,8 +133,49 @@ class ThreadsTest(unittest.TestCase):
                 self.assertEqual(list(folder.rglob("*.tmp")), [])
 
 
-if __name__ == "__main__":
-    if "--at-once" in sys.argv:
-        at_once(sys.argv[sys.argv.index("--at-once") + 1:], REPEATS)
-    else:
-        unittest.main()
+def run_small(seed, output, cache):
+    scene = isostat.Scene(SMALL, set={"grading.seed": seed})
+    return isostat.run(scene, output, cache=cache, threads=1, quiet=True)
+
+
+def refused(_):
+    isostat.Scene(title="no specimen")
+
+
+class PickleTest(FolderTest):
+    """Packings, runs, results and errors come back from other processes as they were."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.done = run_small(1, None, cls.cache)
+
+    def assert_same_packing(self, one, other):
+        for name in ("positions", "velocities", "spins", "radii", "ids", "contact_pairs", "normal_forces",
+                     "shear_forces", "bending_moments", "cell", "strain"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+        self.assertEqual((one.time, one.step, one.law, one.density), (other.time, other.step, other.law, other.density))
+
+    def test_packings(self):
+        packing = self.done.snapshot
+        for again in (pickle.loads(pickle.dumps(packing)), copy.deepcopy(packing)):
+            self.assert_same_packing(again, packing)
+        specimen = isostat.prepare(SMALL, cache=self.cache)
+        again = pickle.loads(pickle.dumps(specimen))
+        self.assertEqual((again.numbers, again.provenance), (specimen.numbers, specimen.provenance))
+        self.assert_same_packing(again.snapshot, specimen.snapshot)
+
+    def test_of_other_processes(self):
+        with concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as processes:
+            in_memory = processes.submit(run_small, 1, None, self.cache)
+            in_folder = processes.submit(run_small, 1, self.folder / "results", self.cache)
+            wrong = processes.submit(refused, None)
+            with self.assertRaisesRegex(isostat.InputError, "must have exactly one"):
+                wrong.result()
+            for other in (in_memory.result(), in_folder.result()):
+                self.assert_same_packing(other.snapshot, self.done.snapshot)
+                self.assertEqual(other.summary["ended"], self.done.summary["ended"])
+                self.assertEqual(other.warnings, self.done.warnings)
+                self.assertEqual(list(other.history), list(self.done.history))
+                self.assertEqual(other.history.units, self.done.history.units)
+        self.assertEqual(isostat.read(self.folder / "results").scene.title, "small")

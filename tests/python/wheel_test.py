@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The wheel, installed into an empty folder: a drained test is run and drawn there, without the source tree."""
 import os
@@ -9,8 +8,8 @@ import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-BINARIES = pathlib.Path(sys.argv.pop(1)).resolve()
+from support import BIN, DISK, ROOT
+
 PARTS = ("CMakeLists.txt", "LICENSE", "README.md", "apps/figures", "apps/report", "pyproject.toml", "python",
          "setup.py")
 OFFLINE = ("--no-index", "--no-deps", "--disable-pip-version-check", "--quiet")
@@ -32,7 +31,7 @@ print("peak", (sigma_1 / sigma_3).max(), "pressure", sigma_3[-1])
 
 class WheelTest(unittest.TestCase):
     def test_runs_and_draws_outside_of_the_tree(self):
-        with tempfile.TemporaryDirectory() as name:
+        with tempfile.TemporaryDirectory(dir=DISK) as name:
             work = pathlib.Path(name)
             pip = [sys.executable, "-m", "pip"]
             for part in PARTS:  # built from a copy: nothing is left in the tree
@@ -40,7 +39,7 @@ class WheelTest(unittest.TestCase):
                 (work / "source" / part).parent.mkdir(parents=True, exist_ok=True)
                 copy(ROOT / part, work / "source" / part)
             subprocess.run([*pip, "wheel", *OFFLINE, "--no-build-isolation", "-w", work / "wheels", work / "source"],
-                           env={**os.environ, "ISOSTAT_BUILD": str(BINARIES.parent)}, check=True)
+                           env={**os.environ, "ISOSTAT_BUILD": str(BIN.parent)}, check=True)
             (wheel,) = (work / "wheels").glob("isostat-*.whl")
             subprocess.run([*pip, "install", *OFFLINE, "--target", work / "site", wheel], check=True)
             done = subprocess.run([sys.executable, "-c", PROGRAM], cwd=work, capture_output=True, text=True,
@@ -52,7 +51,3 @@ class WheelTest(unittest.TestCase):
             done = subprocess.run([sys.executable, work / "site/bin/isostat", "library", "--help"], cwd=work, text=True,
                                   capture_output=True, env={**os.environ, "PYTHONPATH": str(work / "site")})
             self.assertIn("--relative-densities", done.stdout, done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,24 +1,19 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Studies of soil columns: scenes of all runs, what they share, reports of studies that are cut short."""
 import argparse
 import contextlib
 import importlib
 import io
-import pathlib
 import sys
 import types
 
 import h5py
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests/apps")]
-from support import BIN, AppTest, main  # noqa: E402  (the folders come first)
+from isostat.campaign import engines, study
+from studies.column_error import plan as error_plan
+from support import BIN, AppTest
 
-sys.path[:0] = [str(BIN.parent / "python"), str(BIN.parent / "python/isostat")]
 sys.argv[0] = str(BIN / "isostat")  # next to the programs
-from isostat.campaign import engines, study  # noqa: E402
-from studies import column_error as error_plan  # noqa: E402
 
 LIBRARIES = {"column_ensemble": (300, 3000), "column_error": (250, 500, 1000, 2000, 4000)}
 OTHERS = "column_dissipation", "column_fitted", "column_others", "column_phenomena"
@@ -117,7 +112,3 @@ class StudiesOfColumns(AppTest):
         rows = (options.tables / "dilation.csv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(len(rows), 4)
         self.assertRegex(rows[1], r"elastic,0\.00e\+00 m/s2,1\.\d\de\+00 m/s2")
-
-
-if __name__ == "__main__":
-    main()

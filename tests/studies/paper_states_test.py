@@ -1,23 +1,16 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers that the campaign of the paper takes from a test: on histories made by hand, and on laboratory tests whose
 peaks are in their description."""
 import pathlib
 import shutil
-import sys
 import tempfile
 import types
-import unittest
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests/apps")]
-from support import BIN, ToleranceTest  # noqa: E402
-
-sys.path[:0] = [str(BIN.parent / "python")]
-from studies.paper import claims, lab, plan, resistance, states, tables, variants  # noqa: E402  (folders first)
-from studies.tables import write_csv  # noqa: E402
+from studies.paper import claims, lab, plan, resistance, states, tables, variants
+from studies.tables import write_csv
+from support import ToleranceTest
 
 
 def cyclic_history():
@@ -193,7 +186,3 @@ class States(ToleranceTest):
         self.assert_near(gamma, 0.9, 1e-12, "round-off of a fit")
         self.assert_near(slope, 0.02, 1e-12, "round-off of a fit")
         self.assertIsNone(resistance.state_line(rows[:2]))
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])

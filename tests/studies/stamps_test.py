@@ -1,19 +1,14 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Pages of results know by which scenes they were made: a default that changes under one makes it stale."""
 import dataclasses
 import json
-import pathlib
 import re
-import sys
 import unittest
 import unittest.mock
 
-BINARIES = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path("build/release/bin")
-sys.path.insert(0, str(BINARIES.resolve().parent / "python"))
-from isostat.campaign import study  # noqa: E402  (its folder comes first)
+from isostat.campaign import study
+from support import ROOT
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 STALE = re.compile(r"not\s+(been\s+)?(made|run)\s+again\s+since")
 STAMPS = json.loads((ROOT / "studies/stamps.json").read_text(encoding="utf-8"))
 
@@ -53,7 +48,3 @@ class Stamps(unittest.TestCase):
             return dataclasses.replace(run, text=run.text.replace("contact_damping = 0.05", "contact_damping = 0.06"))
         with unittest.mock.patch.object(study, "as_run", with_another_damping):
             self.assertNotEqual(study.fingerprint("paper", paper), before)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Why stages ended, and which of them did not come to their end by themselves: max_steps ended them before any of their
 // conditions was met, or one was met when they began.
-// tested: tests/dem/drive/stages/stage_end_test.cpp, tests/apps/early_end_test.py
+// tested: tests/dem/drive/stages/stage_end_test.cpp, tests/apps/summary_test.py
 #pragma once
 #include "dem/drive/stages/stages.hpp"
 

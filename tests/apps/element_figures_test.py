@@ -1,29 +1,43 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the figures of element tests are drawn against, and the peaks that the figures of columns name."""
+"""What the figures of element tests are drawn against, that no legend lies over the points of its curves, and the peaks
+that the figures of columns name. Other figures of columns are in figures_test.py."""
 import json
-import pathlib
-import sys
 
-import matplotlib
 import numpy as np
+from matplotlib.colors import PowerNorm
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-from matplotlib.colors import PowerNorm  # noqa: E402
-
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "apps"), str(ROOT / "scripts")]
-import column_fixture as fixture  # noqa: E402  (the path comes first)
-from figures.column_expansion import expansion  # noqa: E402
-from figures.column_motion import motions, peak_text  # noqa: E402
-from figures.column_results import Column  # noqa: E402
-from figures.column_soil import time_bar  # noqa: E402
-from figures.common import STYLE, Run  # noqa: E402
-from figures.element_test import draw_pressure  # noqa: E402
-from support import AppTest, main  # noqa: E402
+import column_fixture as fixture
+from figures.column_expansion import expansion
+from figures.column_motion import motions, peak_text
+from figures.column_results import Column
+from figures.column_soil import time_bar
+from figures.common import STYLE, Run, plt
+from figures.element_test import DRAWING, draw_pressure
+from support import CYCLIC, MONOTONIC, AppTest, tiny_scene
 
 DIGITS = "round-off of a sum"
+DRAINED = '[[stage]]\nkind = "drained"\nstrain = 0.02\n'
+
+
+def within(points, box):
+    """Which of the points (n x 2) lie in a box, in pixels."""
+    return ((points > box.min) & (points < box.max)).all(axis=1)
+
+
+def covered(figure):
+    """Label and number of the points of each line that a legend of its axes, or of the figure, lies over."""
+    figure.draw_without_rendering()
+    over_all = list(figure.legends)
+    found = []
+    for axes in figure.axes:
+        boxes = [legend.get_window_extent() for legend in (*over_all, axes.get_legend()) if legend]
+        for line in axes.lines:
+            points = line.get_transform().transform(line.get_xydata())
+            points = points[within(points, axes.get_window_extent())]
+            n = int(np.any([within(points, box) for box in boxes], axis=0).sum()) if boxes else 0
+            if n > 0:
+                found.append((line.get_label(), n))
+    return found
 
 
 class Progress(AppTest):
@@ -115,5 +129,28 @@ class Peaks(AppTest):
                 plt.close(figure)
 
 
-if __name__ == "__main__":
-    main()
+class Legends(AppTest):
+    def check(self, folder):
+        plt.rcParams.update(STYLE)
+        results = DRAWING.results(folder)
+        figures = {name: draw(results) for name, draw in DRAWING.figures.items()}
+        for name, figure in figures.items():
+            if figure is not None:
+                self.assertEqual(covered(figure), [], f"{folder.name}: {name}")
+                plt.close(figure)
+        self.assertGreater(sum(figure is not None for figure in figures.values()), 1)
+
+    def test_a_covered_curve_is_found(self):
+        figure, axes = plt.subplots()
+        axes.plot([0, 1, 2], [0, 1, 2], label="below")
+        axes.legend(loc="upper right")
+        self.assertEqual(covered(figure), [("below", 1)])
+        axes.legend(loc="upper left")
+        self.assertEqual(covered(figure), [])
+        plt.close(figure)
+
+    def test_element_tests(self):
+        for name, stages in (("cyclic", CYCLIC.format(steps=4000)), ("monotonic", MONOTONIC.format(steps=4000)),
+                             ("drained", DRAINED)):
+            self.assert_done(self.run_test(self.write("scene.toml", tiny_scene(stages=stages)), "-o", name, "--quiet"))
+            self.check(self.folder / name)
