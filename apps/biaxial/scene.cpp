@@ -39,101 +39,96 @@ constexpr Range extents{1e-4, 1e6};
 constexpr const char *because_extents = "because a block of soil is larger than its grains and smaller than a country";
 
 constexpr Key block_keys[] = {
-  {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
-   .field = [](BiaxialScene &s) -> Field { return &s.title; }},
+  {.path = "title", .field = member<&BiaxialScene::title>, .text = "What the scene shows; heads tables and figures."},
 
-  {.path = "mesh.width", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "1 m",
-   .range = extents, .reason = because_extents, .text = "Extent along x.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.width; }},
-  {.path = "mesh.height", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "2 m",
-   .range = extents, .reason = because_extents, .text = "Extent along z.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.height; }},
-  {.path = "mesh.cells_across", .kind = Kind::integer, .value = "8", .range = counts, .text = "Elements along x.",
-   .field = [](BiaxialScene &s) -> Field { return &s.mesh.cells_across; }},
-  {.path = "mesh.cells_up", .kind = Kind::integer, .value = "16", .range = counts, .text = "Elements along z.",
-   .field = [](BiaxialScene &s) -> Field { return &s.mesh.cells_up; }},
-  {.path = "mesh.degree", .kind = Kind::integer, .value = "1", .range = {1, 2},
-   .text = "Degree of the displacement in an element.", .field = [](BiaxialScene &s) -> Field { return &s.mesh.degree; }},
-  {.path = "mesh.points", .kind = Kind::integer, .value = "2", .range = {1, 4},
-   .text = "Gauss points of an element along each axis; 1 with degree 1 leaves modes without stiffness.",
-   .field = [](BiaxialScene &s) -> Field { return &s.mesh.points; }},
+  {.path = "mesh.width", .field = member<&BiaxialScene::mesh, &BiaxialMesh::width>, .unit = unit::m, .value = "1 m",
+   .range = extents, .reason = because_extents, .text = "Extent along x."},
+  {.path = "mesh.height", .field = member<&BiaxialScene::mesh, &BiaxialMesh::height>, .unit = unit::m, .value = "2 m",
+   .range = extents, .reason = because_extents, .text = "Extent along z."},
+  {.path = "mesh.cells_across", .field = member<&BiaxialScene::mesh, &BiaxialMesh::cells_across>, .value = "8",
+   .range = counts, .text = "Elements along x."},
+  {.path = "mesh.cells_up", .field = member<&BiaxialScene::mesh, &BiaxialMesh::cells_up>, .value = "16",
+   .range = counts, .text = "Elements along z."},
+  {.path = "mesh.degree", .field = member<&BiaxialScene::mesh, &BiaxialMesh::degree>, .value = "1", .range = {1, 2},
+   .text = "Degree of the displacement in an element."},
+  {.path = "mesh.points", .field = member<&BiaxialScene::mesh, &BiaxialMesh::points>, .value = "2", .range = {1, 4},
+   .text = "Gauss points of an element along each axis; 1 with degree 1 leaves modes without stiffness."},
 
-  {.path = "soil.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
-   .choices = materials,
-   .text = "Linear elastic, parallel slip elements (Iwan), friction and cohesion (Mohr-Coulomb), or a packing of grains at every Gauss point.",
-   .field = [](BiaxialScene &s) -> Field { return &s.soil.material; }},
-  {.path = "soil.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
+  {.path = "soil.material", .field = member<&BiaxialScene::soil, &ColumnLayer::material>,
+   .presence = Presence::required, .value = "elastic", .choices = materials,
+   .text = "Linear elastic, parallel slip elements (Iwan), friction and cohesion (Mohr-Coulomb), or a packing of "
+           "grains at every Gauss point."},
+  {.path = "soil.shear_modulus", .field = member<&BiaxialScene::soil, &ColumnLayer::shear_modulus>, .unit = unit::MPa,
    .presence = Presence::required, .value = "50 MPa", .range = stresses, .reason = because_stresses, .kinds = formula,
-   .text = "Shear modulus of small strain; of iwan and mohr_coulomb at the reference pressure.",
-   .field = [](BiaxialScene &s) -> Field { return &s.soil.shear_modulus; }},
-  {.path = "soil.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true}, .kinds = formula,
-   .text = "Poisson's ratio.", .field = [](BiaxialScene &s) -> Field { return &s.soil.poisson_ratio; }},
+   .text = "Shear modulus of small strain; of iwan and mohr_coulomb at the reference pressure."},
+  {.path = "soil.poisson_ratio", .field = member<&BiaxialScene::soil, &ColumnLayer::poisson_ratio>, .value = "0.3",
+   .range = {0, 0.5, false, true}, .kinds = formula, .text = "Poisson's ratio."},
 };
 
 constexpr Key test_keys[] = {
-  {.path = "nonlocal.length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
+  {.path = "nonlocal.length", .field = member<&BiaxialScene::nonlocal, &NonlocalParameters::length>, .unit = unit::m,
+   .value = "0 m", .range = not_negative,
+   .text = "Each point of the soil gets the mean strain around it, with Gaussian weights of this standard deviation; "
+           "Gauss points should not be farther apart than about 1.6 of it. 0: its own strain. Above 0 m it needs "
+           "newton.max_iterations = 0 and relaxation."},
+  {.path = "nonlocal.stiffness", .field = member<&BiaxialScene::nonlocal, &NonlocalParameters::stiffness>, .value = "1",
    .range = not_negative,
-   .text = "Each point of the soil gets the mean strain around it, with Gaussian weights of this standard deviation; Gauss "
-           "points should not be farther apart than about 1.6 of it. 0: its own strain. "
-           "Above 0 m it needs newton.max_iterations = 0 and relaxation.",
-   .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.length; }},
-  {.path = "nonlocal.stiffness", .value = "1", .range = not_negative,
-   .text = "Of the elastic stress against differences of strain and mean strain, over the wave moduli at the start.",
-   .field = [](BiaxialScene &s) -> Field { return &s.nonlocal.stiffness; }},
+   .text = "Of the elastic stress against differences of strain and mean strain, over the wave moduli at the start."},
 
-  {.path = "weak.cells", .kind = Kind::integer, .value = "0",
-   .text = "Elements along each side of the square; 0: there is none. The square lies in the block.",
-   .field = [](BiaxialScene &s) -> Field { return &s.weak.cells; }},
-  {.path = "weak.column", .kind = Kind::integer, .value = "0", .text = "Its lowest element along x, counted from 0.",
-   .field = [](BiaxialScene &s) -> Field { return &s.weak.column; }},
-  {.path = "weak.row", .kind = Kind::integer, .value = "0", .text = "Its lowest element along z, counted from 0.",
-   .field = [](BiaxialScene &s) -> Field { return &s.weak.row; }},
-  {.path = "weak.factor", .value = "0.8", .range = positive,
-   .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); of no meaning to grains.",
-   .field = [](BiaxialScene &s) -> Field { return &s.weak.factor; }},
-  {.path = "weak.relative_density", .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
+  {.path = "weak.cells", .field = member<&BiaxialScene::weak, &WeakZone::cells>, .value = "0",
+   .text = "Elements along each side of the square; 0: there is none. The square lies in the block."},
+  {.path = "weak.column", .field = member<&BiaxialScene::weak, &WeakZone::column>, .value = "0",
+   .text = "Its lowest element along x, counted from 0."},
+  {.path = "weak.row", .field = member<&BiaxialScene::weak, &WeakZone::row>, .value = "0",
+   .text = "Its lowest element along z, counted from 0."},
+  {.path = "weak.factor", .field = member<&BiaxialScene::weak, &WeakZone::factor>, .value = "0.8", .range = positive,
+   .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); of no meaning "
+           "to grains."},
+  {.path = "weak.relative_density",
+   .field = member<&BiaxialScene::weak, &WeakZone::grains, &SpecimenRequest::relative_density>,
+   .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
    .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
-   .text = "D_r of its packings; left out: that of the soil.",
-   .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.relative_density; }},
-  {.path = "weak.realisation", .kind = Kind::integer, .value = "0", .text = "Seed of its packings.",
-   .field = [](BiaxialScene &s) -> Field { return &s.weak.grains.realisation; }},
+   .text = "D_r of its packings; left out: that of the soil."},
+  {.path = "weak.realisation", .field = member<&BiaxialScene::weak, &WeakZone::grains, &SpecimenRequest::realisation>,
+   .value = "0", .text = "Seed of its packings."},
 
-  {.path = "test.confinement", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .value = "100 kPa", .range = stresses, .reason = because_stresses, .text = "Isotropic effective stress at the start, and what is on the sides throughout, beside the pore pressure at the start.",
-   .field = [](BiaxialScene &s) -> Field { return &s.test.confinement; }},
-  {.path = "test.axial_strain", .value = "0.05", .range = {-0.5, 0.5},
-   .text = "At the end: way of the top over the height, compression positive.",
-   .field = [](BiaxialScene &s) -> Field { return &s.test.axial_strain; }},
-  {.path = "test.steps", .kind = Kind::integer, .value = "50", .range = counts, .text = "Equal load steps.",
-   .field = [](BiaxialScene &s) -> Field { return &s.test.steps; }},
-  {.path = "test.duration", .kind = Kind::quantity, .dimension = Dimension::time, .unit = "s", .value = "100 s",
-   .range = positive, .text = "Of the test; counts only where water moves.",
-   .field = [](BiaxialScene &s) -> Field { return &s.test.duration; }},
+  {.path = "test.confinement", .field = member<&BiaxialScene::test, &BiaxialTest::confinement>, .unit = unit::kPa,
+   .value = "100 kPa", .range = stresses, .reason = because_stresses,
+   .text = "Isotropic effective stress at the start, and what is on the sides throughout, beside the pore pressure at "
+           "the start."},
+  {.path = "test.axial_strain", .field = member<&BiaxialScene::test, &BiaxialTest::axial_strain>, .value = "0.05",
+   .range = {-0.5, 0.5}, .text = "At the end: way of the top over the height, compression positive."},
+  {.path = "test.steps", .field = member<&BiaxialScene::test, &BiaxialTest::steps>, .value = "50", .range = counts,
+   .text = "Equal load steps."},
+  {.path = "test.duration", .field = member<&BiaxialScene::test, &BiaxialTest::duration>,
+   .unit = {Dimension::time, "s"}, .value = "100 s", .range = positive,
+   .text = "Of the test; counts only where water moves."},
 };
 
 constexpr const char *drainages[] = {"drained", "undrained"};
 
 constexpr Key water_keys[] = {
-  {.path = "water.drainage", .kind = Kind::choice, .value = "drained", .choices = drainages,
-   .text = "No excess pore pressure; or no water leaves the block (u-p, degree 2 with 3 points). Then axial_stress is total without the pressure at the start, the sides keep their total stress, and p and q of maps are effective.",
-   .field = [](BiaxialScene &s) -> Field { return &s.water.drainage; }},
-  {.path = "water.permeability", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s", .value = "0 m/s",
-   .range = not_negative,
-   .text = "Hydraulic conductivity k, by which water moves inside of an undrained block; 0 m/s: it does not.",
-   .field = [](BiaxialScene &s) -> Field { return &s.water.permeability; }},
-  {.path = "water.porosity", .value = "0.4", .range = {0, 1, true, true},
-   .text = "Share of the pores, whose water is compressible (2.2 GPa); undrained.",
-   .field = [](BiaxialScene &s) -> Field { return &s.water.porosity; }},
+  {.path = "water.drainage", .field = member<&BiaxialScene::water, &BlockWater::drainage>, .value = "drained",
+   .choices = drainages,
+   .text = "No excess pore pressure; or no water leaves the block (u-p, degree 2 with 3 points). Then axial_stress is "
+           "total without the pressure at the start, the sides keep their total stress, and p and q of maps are "
+           "effective."},
+  {.path = "water.permeability", .field = member<&BiaxialScene::water, &BlockWater::permeability>, .unit = unit::m_s,
+   .value = "0 m/s", .range = not_negative,
+   .text = "Hydraulic conductivity k, by which water moves inside of an undrained block; 0 m/s: it does not."},
+  {.path = "water.porosity", .field = member<&BiaxialScene::water, &BlockWater::porosity>, .value = "0.4",
+   .range = {0, 1, true, true}, .text = "Share of the pores, whose water is compressible (2.2 GPa); undrained."},
 };
 
 constexpr Key output_keys[] = {
-  {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",
-   .text = "Folder of the run; left out: results/ and the name of the scene file.",
-   .field = [](BiaxialScene &s) -> Field { return &s.output.folder; }},
-  {.path = "output.map_every", .kind = Kind::integer, .value = "5", .range = counts,
-   .text = "Load steps between two ParaView files and rows of maps.h5.",
-   .field = [](BiaxialScene &s) -> Field { return &s.output.map_every; }},
-  {.path = "output.checkpoint", .kind = Kind::quantity, .dimension = Dimension::interval, .unit = "min",
-   .value = "5 min", .range = positive, .text = "Wall-clock time between checkpoints, which are written between load steps.",
-   .field = [](BiaxialScene &s) -> Field { return &s.output.checkpoint_minutes; }},
+  {.path = "output.folder", .field = member<&BiaxialScene::output, &BiaxialOutput::folder>,
+   .presence = Presence::optional, .value = "results/my-run",
+   .text = "Folder of the run; left out: results/ and the name of the scene file."},
+  {.path = "output.map_every", .field = member<&BiaxialScene::output, &BiaxialOutput::map_every>, .value = "5",
+   .range = counts, .text = "Load steps between two ParaView files and rows of maps.h5."},
+  {.path = "output.checkpoint", .field = member<&BiaxialScene::output, &BiaxialOutput::checkpoint_minutes>,
+   .unit = unit::min, .value = "5 min", .range = positive,
+   .text = "Wall-clock time between checkpoints, which are written between load steps."},
 };
 
 constexpr Dimension dimensions[] = {Dimension::length, Dimension::pressure, Dimension::rate, Dimension::interval,
@@ -203,7 +198,7 @@ void check(const SceneDocument &document, const BiaxialScene &scene)
 BiaxialScene checked_scene(const SceneDocument &document)
 {
   BiaxialScene scene;
-  fill_scene(document, &scene);
+  fill_scene(document, scene);
   check(document, scene);
   return scene;
 }
@@ -213,15 +208,14 @@ const SceneSchema &biaxial_schema()
 {
   static const KeyTable keys{
       block_keys,
-      splice("soil", iwan_keys(), iwan, [](BiaxialScene &s) -> IwanParameters & { return s.soil.iwan; }),
-      splice("soil", mohr_coulomb_keys(), mohr_coulomb,
-             [](BiaxialScene &s) -> MohrCoulombParameters & { return s.soil.mohr_coulomb; }),
-      splice("soil", packing_keys(), grains, [](BiaxialScene &s) -> RveMaterialSettings & { return s.grains; }),
-      splice("soil", specimen_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
-      splice("soil", lot_keys(), grains, [](BiaxialScene &s) -> SpecimenRequest & { return s.soil.grains; }),
+      splice<&BiaxialScene::soil, &ColumnLayer::iwan>("soil", iwan_keys(), iwan),
+      splice<&BiaxialScene::soil, &ColumnLayer::mohr_coulomb>("soil", mohr_coulomb_keys(), mohr_coulomb),
+      splice<&BiaxialScene::grains>("soil", packing_keys(), grains),
+      splice<&BiaxialScene::soil, &ColumnLayer::grains>("soil", specimen_keys(), grains),
+      splice<&BiaxialScene::soil, &ColumnLayer::grains>("soil", lot_keys(), grains),
       test_keys,
       water_keys,
-      splice("newton", newton_keys(), 0, [](BiaxialScene &s) -> NewtonSettings & { return s.newton; }),
+      splice<&BiaxialScene::newton>("newton", newton_keys()),
       output_keys};
   static const SceneSchema schema{.keys = keys.keys(),
                                   .sections = sections,
@@ -250,7 +244,7 @@ BiaxialScene read_biaxial_scene(const std::string &path, const std::vector<std::
   return scene;
 }
 
-std::string to_toml(const BiaxialScene &scene) { return write_scene(biaxial_schema(), &scene); }
+std::string to_toml(const BiaxialScene &scene) { return write_scene(biaxial_schema(), scene); }
 
 std::string default_biaxial_scene() { return write_defaults(biaxial_schema()); }
 
