@@ -22,9 +22,11 @@ targets=("$@")
 cmake --build --preset fuzz --parallel "$(nproc)" --target "${targets[@]/#/fuzz_}"
 mkdir -p $folder/found
 
-# The words of the scenes, of which the fuzzer makes new ones.
-grep -ohE '^\| `[a-z0-9_.]+`' docs/*scene_reference.md | grep -oE '[a-z0-9_]+' | sort -u | sed 's/.*/"&"/' \
-  >$folder/words.dictionary
+# The words of the scenes and numbers that programs get wrong, of which the fuzzer makes new ones.
+{
+  grep -ohE '^\| `[a-z0-9_.]+`' docs/*scene_reference.md | grep -oE '[a-z0-9_]+'
+  printf '%s\n' -0 0.0 1e-300 1e300 1e400 5e-324 nan -inf 4294967296 9223372036854775808 0x10 1_000 1979-05-27 true [] {}
+} | sort -u | sed 's/.*/"&"/' >$folder/words.dictionary
 
 seconds=$(awk -v h="$hours" -v cores="$(nproc)" -v n=${#targets[@]} 'BEGIN { print int(3600 * h * cores / n + 0.5) }')
 fuzz() {

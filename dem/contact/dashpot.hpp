@@ -27,7 +27,7 @@ inline double dashpot_coefficient(double beta, double kn, double m1, double m2)
 /// @param beta  [-]   @param kn  N/m   @param m1, m2  kg   @param fn  N   @param speed  v_n, m/s
 /// @return fn - F_n, N
 /// cost in the loop: 17 vector operations of some 310; none where beta is 0
-/// tested: tests/dem/contact/dashpot_test.cpp, loop_test.cpp, cell_loop_test.cpp
+/// tested: tests/dem/contact/dashpot_test.cpp, loop_test.cpp
 inline double dashpot_force(double beta, double kn, double m1, double m2, double fn, double speed)
 {
   return std::min(dashpot_coefficient(beta, kn, m1, m2) * speed, fn);

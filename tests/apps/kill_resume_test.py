@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs of element_test that are stopped, killed, resumed, or watched more or less closely continue to the same bits.
-One machine as another that has fewer instructions: each set has its own bits, all the same test, and a run that continues
-with another set than its checkpoint was written with says so."""
+One machine as another that has fewer instructions: each set has its own bits, all the same test, and a run that
+continues with another set than its checkpoint was written with says so."""
 import os
 import pathlib
 import random

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <bit>
 #include <cmath>
@@ -17,15 +18,7 @@ namespace
 {
 std::string complaint(const char *text, Dimension dimension)
 {
-  try
-    {
-      parse_quantity(text, dimension);
-    }
-  catch (const InputError &error)
-    {
-      return error.what();
-    }
-  return "accepted";
+  return test::refusal([&] { parse_quantity(text, dimension); });
 }
 
 /// A unit moves the decimal point before the only rounding: equal to the C++ literal, not nearly equal.

@@ -17,14 +17,9 @@ inline CellRecipe soft_recipe(std::uint64_t seed, double pressure)
   return recipe;
 }
 
-/// Made once per program.
 inline const Snapshot &soft_specimen(std::uint64_t seed, double pressure = 100e3)
 {
-  static std::map<std::pair<std::uint64_t, double>, Snapshot> made;
-  const std::pair key(seed, pressure);
-  if (!made.contains(key))
-    made[key] = prepare_in_cell(soft_recipe(seed, pressure));
-  return made[key];
+  return prepare_in_cell(soft_recipe(seed, pressure));
 }
 
 /// Four packings, at two seeds and two pressures.

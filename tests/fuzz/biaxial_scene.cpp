@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Text as a scene of a biaxial block.
 #include "apps/biaxial/scene.hpp"
-#include "tests/fuzz/scene_target.hpp"
+#include "tests/fuzz/input.hpp"
 
-const isostat::fuzz::SceneTarget isostat::fuzz::scene_target = {try_scene<parse_biaxial_scene>, biaxial_schema};
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+{
+  isostat::fuzz::try_scene<isostat::parse_biaxial_scene>(data, size);
+  return 0;
+}

@@ -28,13 +28,6 @@ inline void require(bool holds, const char *property)
   std::abort();
 }
 
-/// Inputs that readers took, and those that they refused.
-struct Tally
-{
-  std::uint64_t taken = 0, refused = 0;
-};
-inline Tally tally;
-
 /// What `read` returns, or nothing where it refuses its input.
 template <typename Read>
 auto accepted(const Read &read) -> std::optional<decltype(read())>
@@ -43,11 +36,9 @@ auto accepted(const Read &read) -> std::optional<decltype(read())>
   try
     {
       result.emplace(read());
-      ++tally.taken;
     }
   catch (const InputError &refusal)
     {
-      ++tally.refused;
       require(std::string_view(refusal.what()).size() > 10, "a refusal says what is wrong");
     }
   return result;
@@ -68,24 +59,30 @@ auto possible(const Run &run) -> std::optional<decltype(run())>
     }
 }
 
-/// Text as a scene or a plan: what `parse(text, name)` takes is written and read back to the same, bit for bit.
-template <typename Parse>
-void round_trip(const std::string &text, const Parse &parse)
+inline std::string text_of(const std::uint8_t *data, std::size_t size)
 {
-  const auto taken = accepted([&] { return parse(text, "given.toml"); });
+  return {reinterpret_cast<const char *>(data), size};
+}
+
+/// Text as a scene: what `parse(text, name)` takes is written and read back to the same, bit for bit.
+template <auto parse>
+void try_scene(const std::uint8_t *data, std::size_t size)
+{
+  const auto parsed = [](const std::string &text, const char *name) {
+    if constexpr (requires { parse(text, name, {}); })
+      return parse(text, name, {});
+    else
+      return parse(text, name);
+  };
+  const auto taken = accepted([&] { return parsed(text_of(data, size), "given.toml"); });
   if (!taken)
     return;
   const std::string written = to_toml(*taken);
-  const auto again = parse(written, "written.toml");
+  const auto again = parsed(written, "written.toml");
   if constexpr (std::equality_comparable<decltype(again)>)
     require(again == *taken, "what is written is what was taken");
   else
     require(to_toml(again) == written, "what is written is what was taken");
-}
-
-inline std::string text_of(const std::uint8_t *data, std::size_t size)
-{
-  return {reinterpret_cast<const char *>(data), size};
 }
 
 /// Bytes as a file that lives in memory, for readers that take a path.

@@ -9,7 +9,6 @@
 #include "tests/support/near.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-#include <cstdio>
 #include <gmock/gmock.h>
 #include <numbers>
 #include <numeric>
@@ -108,7 +107,6 @@ TEST(BoundaryProblemHardCases, ALoadBeyondTheLimitLoad)
       statics.step(0.1);
   });
   EXPECT_THAT(message, AllOf(HasSubstr("no equilibrium in step"), HasSubstr("the last with equilibrium")));
-  std::printf("in equilibrium up to %.3f of the limit load\n", statics.time());
   EXPECT_NEAR_BECAUSE(statics.time(), 1, 0.06, "two quadratic elements below the half strip, sub-steps of 0.006");
   const Stress last = statics.stresses()[0];
   const SolverState saved = statics.save();

@@ -77,8 +77,6 @@ inline void reverse_in_liquid(Rve &rve, double reach)
   double gamma = 0;
   for (; gamma > -reach && mean_stress(rve) < p0; gamma -= 2e-3)
     shear(rve, -2e-3, 4);
-  std::printf("four reversals in the liquid: p' at most %.3f kPa; then %.1f kPa at gamma %.1f %%\n", maximum / 1e3,
-              mean_stress(rve) / 1e3, 100 * gamma);
   EXPECT_GT(mean_stress(rve), p0);
   EXPECT_BELOW_BECAUSE(rve.stress()(0, 1), -0.3 * mean_stress(rve), "sheared to the left, it resists to the left");
 }

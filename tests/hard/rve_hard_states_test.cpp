@@ -83,8 +83,6 @@ TEST_P(Solids, PassTenMegapascalsAtConstantVolume)
   for (; gamma < (way.is_hertz ? 0.3 : 0.05) && mean_stress(rve) < 10e6; gamma += 5e-3)
     shear(rve, 5e-3, way.increment > 0 ? 5 : 10);
   const double now = rve.assembly().settings.time_step;
-  std::printf("dense: p' %.2f MPa, tau/p' %.3f at gamma %.1f %%; time step %.3g s, then %.3g s\n",
-              mean_stress(rve) / 1e6, rve.stress()(0, 1) / mean_stress(rve), 100 * gamma, step, now);
   EXPECT_GT(mean_stress(rve), 10e6);
   EXPECT_GT(rve.stress()(0, 1), (way.is_hertz ? 0.3 : 0.4) * mean_stress(rve));
   EXPECT_NE(now, step) << "the time step follows the stiffness";
@@ -100,8 +98,6 @@ TEST_P(Solids, OfGrainsOneToFiveInSize)
   EXPECT_GT(packing.max_radius(), 4 * packing.min_radius());
   EXPECT_NEAR_BECAUSE(mean_stress(rve) / p0, 1, 0.01, "the preparation ends within 0.3 % in each direction");
   const ExtremeStresses path = shear(rve, 5e-3, 20);
-  std::printf("sizes 1:%.1f: p' %.1f kPa after 0.5 %%, smallest %.1f kPa\n",
-              packing.max_radius() / packing.min_radius(), mean_stress(rve) / 1e3, path.min_p / 1e3);
   EXPECT_GE(path.min_p, 0);
   EXPECT_LT(path.max_p, 10e6);
   expect_balanced(rve);

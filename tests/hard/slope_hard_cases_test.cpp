@@ -7,7 +7,6 @@
 #include "tests/support/near.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <gtest/gtest.h>
 
 namespace isostat
@@ -15,9 +14,11 @@ namespace isostat
 namespace
 {
 /// @param degrees  friction of its preparation: 17 loose, as it is sheared with 18
-Snapshot specimen_of_friction(double degrees)
+Snapshot specimen_of_friction(double degrees, std::uint64_t grains = 200)
 {
   test::CellRecipe recipe = test::soft_recipe(4, 50e3);
+  recipe.grading = test::small_grading(grains);
+  recipe.grading.seed = 4;
   recipe.degrees = degrees;
   return test::prepare_in_cell(recipe);
 }
@@ -105,11 +106,6 @@ TEST(SlopeHardCases, ALiquefiedSlopeFlowsAndComesToRestUnderItsStaticShear)
   const PeriodicCell cell = slope.soil().element(0)->save().grains.cell;
   const Stress end = slope.run().stresses()[0];
   const DynamicsEnergy energy = slope.run().energy();
-  std::printf(
-      "flow: gamma %.2f after %.2f s, %d flips, sigma'_n %.2f kPa of %.2f, tau %.3f kPa of %.3f, energy at most "
-      "%.1f J, residual %.1e J\n",
-      gamma, slope.run().time(), static_cast<int>(cell.flips), -end[2] / 1e3, -start[2] / 1e3, end[4] / 1e3,
-      start[4] / 1e3, slope.largest_energy(), energy.residual());
   EXPECT_GT(gamma, 0.5); // more than 1 with other instruction sets, which make other packings
   EXPECT_GT(cell.flips, 0u);
   ASSERT_TRUE(slope.is_at_rest()) << "what remains of the packings' strength stops it";
@@ -124,10 +120,10 @@ TEST(SlopeHardCases, ALiquefiedSlopeFlowsAndComesToRestUnderItsStaticShear)
 TEST(SlopeHardCases, APackingIsShearedToThreeHundredPerCent)
 {
   RveSettings settings;
-  settings.motion.inertial_number = 1e-3;
+  settings.motion.inertial_number = 4e-3;
   settings.motion.time_step_safety *= 0.5; // what the refusal of a grain that flies off advises; some packings need it
   settings.frame = column_frame();
-  Rve rve(specimen_of_friction(8), settings);
+  Rve rve(specimen_of_friction(8, 100), settings);
   const double volume = rve.assembly().volume();
   double largest = 0, smallest = 1e300; // tau/p' of the second half
   for (int k = 0; k < 600; ++k)
@@ -143,8 +139,6 @@ TEST(SlopeHardCases, APackingIsShearedToThreeHundredPerCent)
       largest = std::max(largest, ratio);
       smallest = std::min(smallest, ratio);
     }
-  std::printf("300 %% of shear: %d flips, tau/p' between %.2f and %.2f over the second half, p' %.1f kPa\n",
-              static_cast<int>(rve.save().grains.cell.flips), smallest, largest, -rve.stress().trace() / 3e3);
   EXPECT_GT(rve.save().grains.cell.flips, 2u);
   EXPECT_NEAR_BECAUSE(rve.assembly().volume() / volume, 1, 1e-12, "round-off: the volume is set from its logarithm");
   EXPECT_GT(smallest, 0.1) << "sheared downslope, it resists";

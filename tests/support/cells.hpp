@@ -3,20 +3,13 @@
 #pragma once
 #include "dem/assembly/assembly.hpp"
 #include "dem/motion/critical_step.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/specimens.hpp"
 
 #include <gtest/gtest.h>
 
 namespace isostat::test
 {
-/// Displacement gradient of a step of simple shear: x moves with y.
-inline Mat3 simple_shear(double step)
-{
-  Mat3 gradient = Mat3::Zero();
-  gradient(0, 1) = step;
-  return gradient;
-}
-
 /// What the drivers do every 2,000 steps: a packing that stiffens needs a shorter step.
 inline void review_time_step(Assembly &a)
 {
@@ -32,30 +25,6 @@ inline void strain(Assembly &a, const Mat3 &gradient, int steps)
       a.deform(gradient);
     }
   a.compute_forces();
-}
-
-inline bool same_bits(const Mat3 &a, const Mat3 &b) { return (a.array() == b.array()).all(); }
-
-inline void expect_same_bits(const Snapshot &a, const Snapshot &b)
-{
-  EXPECT_EQ(a.step, b.step);
-  EXPECT_EQ(a.time, b.time);
-  EXPECT_EQ(a.grains.position, b.grains.position);
-  EXPECT_EQ(a.grains.velocity, b.grains.velocity);
-  EXPECT_EQ(a.grains.spin, b.grains.spin);
-  EXPECT_EQ(a.cell->flips, b.cell->flips);
-  EXPECT_EQ(a.cell->volume_strain, b.cell->volume_strain);
-  for (auto m : {&PeriodicCell::edges, &PeriodicCell::deformation, &PeriodicCell::rotation, &PeriodicCell::strain_step})
-    EXPECT_TRUE(same_bits((*a.cell).*m, (*b.cell).*m));
-  ASSERT_EQ(a.contacts.size(), b.contacts.size());
-  for (std::size_t c = 0; c < a.contacts.size(); ++c)
-    {
-      const ContactHistory &g = a.contacts[c].history, &h = b.contacts[c].history;
-      ASSERT_TRUE(a.contacts[c].first == b.contacts[c].first && a.contacts[c].second == b.contacts[c].second);
-      ASSERT_TRUE(g.normal == h.normal && g.shear_force == h.shear_force && g.bending_moment == h.bending_moment &&
-                  g.twisting_moment == h.twisting_moment)
-          << "contact " << c;
-    }
 }
 
 /// How far contact forces of the same contacts are apart: forces over the mean force, moments over the mean moment.

@@ -12,11 +12,14 @@
 //   EXPECT_NEAR_BECAUSE(sum, 1, round_off);
 //   EXPECT_NEAR_BECAUSE(pressure, 1e5, 1e5 * round_off);
 //
-// A failure prints the reason: it says whether the code or the argument for the tolerance is wrong. Each form has an
-// ASSERT twin. The Python twin is `tests/apps/support.py` (assert_near, assert_close, assert_below).
+// A failure prints the reason: it says whether the code or the argument for the tolerance is wrong. With ISOSTAT_SHOW
+// in the environment each comparison prints what it found, for the choice of a tolerance. Each form has an ASSERT twin.
+// The Python twin is `tests/apps/support.py` (assert_near, assert_close, assert_below).
 #pragma once
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,11 +36,18 @@ constexpr Tolerance operator*(double factor, Tolerance tolerance)
   return {factor * tolerance.value, tolerance.reason};
 }
 
+inline void show(const char *text, double found, double allowed)
+{
+  if (std::getenv("ISOSTAT_SHOW"))
+    std::printf("%s: %.3g of %.3g\n", text, found, allowed);
+}
+
 // Passes when the difference is at most `allowed`; NaN passes nothing.
 inline testing::AssertionResult differs_by_at_most(double allowed, const char *actual_text, const char *expected_text,
                                                    double actual, double expected, const char *reason)
 {
   const double difference = std::abs(actual - expected);
+  show(actual_text, difference, allowed);
   if (difference <= allowed)
     return testing::AssertionSuccess();
   return testing::AssertionFailure() << actual_text << " = " << testing::PrintToString(actual) << " and\n"
@@ -61,6 +71,7 @@ inline testing::AssertionResult is_close(const char *actual_text, const char *ex
 
 inline testing::AssertionResult is_below(const char *error_text, const char *, double error, Tolerance tolerance)
 {
+  show(error_text, error, tolerance.value);
   if (error <= tolerance.value)
     return testing::AssertionSuccess();
   return testing::AssertionFailure() << error_text << " = " << testing::PrintToString(error) << " is more than "

@@ -2,6 +2,8 @@
 #pragma once
 #include "tests/support/specimens.hpp"
 
+#include <deque>
+
 namespace isostat::test
 {
 /// How a periodic specimen for tests is made.
@@ -12,11 +14,18 @@ struct CellRecipe
   double degrees = 10; ///< preparation friction
   double pressure = 200e3;
   std::string consolidation = "isotropic";
+
+  bool operator==(const CellRecipe &) const = default;
 };
 
-/// Karlsruhe sand in a periodic cell, prepared as the element tests prepare it. Some seconds for 1,000 grains.
-inline Snapshot prepare_in_cell(const CellRecipe &recipe)
+/// Karlsruhe sand in a periodic cell, prepared as the element tests prepare it. Some seconds for 1,000 grains; made
+/// once per program and kept.
+inline const Snapshot &prepare_in_cell(const CellRecipe &recipe)
 {
+  static std::deque<std::pair<CellRecipe, Snapshot>> made;
+  for (const auto &[known, specimen] : made)
+    if (known == recipe)
+      return specimen;
   Unobserved nobody;
   SpecimenSpec spec;
   spec.domain = "periodic-cell";
@@ -24,6 +33,6 @@ inline Snapshot prepare_in_cell(const CellRecipe &recipe)
   spec.consolidation = recipe.consolidation;
   const double friction = std::tan(recipe.degrees * M_PI / 180);
   const Snapshot compacted = compact(make_cloud(recipe.grading), recipe.law, friction, {spec, nobody});
-  return rebalance(compacted, recipe.law, {spec, nobody});
+  return made.emplace_back(recipe, rebalance(compacted, recipe.law, {spec, nobody})).second;
 }
 } // namespace isostat::test

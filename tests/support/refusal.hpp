@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The message for a user whose scene is refused.
+// The message for a user whose input is refused or whose run fails.
 #pragma once
 #include "base/error.hpp"
 
@@ -30,3 +30,27 @@ inline void expect_parts(const std::string &message, const std::vector<std::stri
     EXPECT_NE(message.find(part), std::string::npos) << message << "\n  lacks: " << part;
 }
 } // namespace isostat::test
+
+namespace isostat
+{
+/// Runs `action`, expects an `Error`, and returns its message.
+template <typename Error, typename Action>
+std::string message_of(const Action &action)
+{
+  try
+    {
+      action();
+    }
+  catch (const Error &error)
+    {
+      return error.what();
+    }
+  catch (const std::exception &other)
+    {
+      ADD_FAILURE() << "another error: " << other.what();
+      return {};
+    }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+} // namespace isostat

@@ -22,6 +22,25 @@ inline LinearRolling paper_law()
   return law;
 }
 
+/// Displacement gradient of simple shear: x moves with y.
+inline Mat3 simple_shear(double gamma)
+{
+  Mat3 gradient = Mat3::Zero();
+  gradient(0, 1) = gamma;
+  return gradient;
+}
+
+/// The same grains at rest.
+inline Snapshot stopped(Snapshot snapshot)
+{
+  for (std::size_t i = 0; i < snapshot.grains.n_grains(); ++i)
+    {
+      snapshot.grains.set_linear_velocity(i, Vec3::Zero());
+      snapshot.grains.set_angular_velocity(i, Vec3::Zero());
+    }
+  return snapshot;
+}
+
 /// A stage of shear to a strain.
 template <class Kind>
 Kind sheared_to(double strain)

@@ -2,6 +2,7 @@
 #pragma once
 #include "dem/contact/linear_rolling/law.hpp"
 #include "dem/state/snapshot.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -40,27 +41,6 @@ protected:
 
   std::filesystem::path folder;
 };
-
-/// Runs `action`, expects an `Error`, and returns its message.
-template <typename Error, typename Action>
-std::string message_of(const Action &action)
-{
-  try
-    {
-      action();
-    }
-  catch (const Error &error)
-    {
-      return error.what();
-    }
-  catch (const std::exception &other)
-    {
-      ADD_FAILURE() << "another error: " << other.what();
-      return {};
-    }
-  ADD_FAILURE() << "no error";
-  return {};
-}
 
 /// Three grains, two contacts with history, one wall contact; numbers that do not end in binary, a signed zero.
 inline Snapshot small_snapshot()

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -44,13 +43,8 @@ struct Strip : Discretisation<2>
   }
 };
 
-struct Collapse
-{
-  double load, settlement; ///< beyond the surcharge, Pa; of the middle of the strip, m
-};
-
-/// The largest load that has an equilibrium, within 0.25 % of `expected`.
-Collapse collapse(const Strip &space, double friction, double surcharge, double expected)
+/// The largest load beyond the surcharge that has an equilibrium, within 0.25 % of `expected`, Pa.
+double limit_load(const Strip &space, double friction, double surcharge, double expected)
 {
   MohrCoulombParameters p;
   p.shear_modulus = modulus;
@@ -73,8 +67,7 @@ Collapse collapse(const Strip &space, double friction, double surcharge, double 
     }
   catch (const RunFailure &)
     {}
-  const long middle = space.find_dof({0, 0, space.mesh().soil.height()}, 2);
-  return {statics.time() * expected, -statics.displacement().local_element(middle)};
+  return statics.time() * expected;
 }
 } // namespace
 
@@ -83,25 +76,16 @@ TEST(BearingCapacity, OfAStripIsPrandtls)
   struct Case
   {
     double degrees, surcharge, width, height;
-    std::vector<unsigned> cells; ///< below half of the strip
   };
-  for (const auto &[degrees, surcharge, width, height, meshes] :
-       {Case{0, 0, 4, 2, {2, 4}}, Case{20, 0, 8, 4, {2, 4}}, Case{20, 20e3, 8, 4, {2}}})
+  for (const auto &[degrees, surcharge, width, height] : {Case{0, 0, 4, 2}, Case{20, 0, 8, 4}, Case{20, 20e3, 8, 4}})
     {
       const double friction = std::tan(degrees * std::numbers::pi / 180), sine = std::sin(std::atan(friction));
       const double n_q = std::exp(std::numbers::pi * friction) * (1 + sine) / (1 - sine);
       const double n_c = friction > 0 ? (n_q - 1) / friction : 2 + std::numbers::pi;
       const double exact = cohesion * n_c + surcharge * n_q;
-      double last = 0;
-      for (unsigned cells : meshes)
-        {
-          const auto [load, settlement] = collapse(Strip(width, height, cells), friction, surcharge, exact - surcharge);
-          last = (load + surcharge) / exact - 1;
-          std::printf("phi %.0f deg, q %.0f kPa, %u cells per half strip: %.2f kPa, exact %.2f, %+.2f %%; settlement "
-                      "%.3f m\n",
-                      degrees, surcharge / 1e3, cells, (load + surcharge) / 1e3, exact / 1e3, 100 * last, settlement);
-        }
-      EXPECT_NEAR_BECAUSE(last, 0, 0.02, "two or four quadratic elements below half of the strip, loads within 0.25 %");
+      const double load = limit_load(Strip(width, height, 2), friction, surcharge, exact - surcharge);
+      EXPECT_CLOSE_BECAUSE(load + surcharge, exact, 0.02,
+                           "two quadratic elements below half of the strip, loads within 0.25 %");
     }
 }
 } // namespace isostat

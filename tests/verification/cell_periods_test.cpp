@@ -80,10 +80,6 @@ TEST(Periods, OfAnyChoiceGiveTheSameForcesAndMeasures)
       const ForceMisfit misfit = misfit_of_forces(one, two);
       const Mat6 c = condensed_stiffness(one);
       const double stiffness = (condensed_stiffness(two) - c).norm() / c.norm();
-      std::printf("periods up to %.0f edges, cell %.3f d wide: forces differ by %.1e, moments by %.1e of the mean, "
-                  "stress by %.1e, stiffness by %.1e\n",
-                  u.cwiseAbs().maxCoeff(), width_over_diameter(b), misfit.force, misfit.moment, stress_apart(a, b),
-                  stiffness);
       EXPECT_GT(misfit.contacts, 500u);
       EXPECT_BELOW_BECAUSE(misfit.force, last_digit);
       EXPECT_BELOW_BECAUSE(misfit.moment, last_digit);
@@ -114,8 +110,6 @@ TEST(Periods, OfAnyChoiceGiveTheSameMotion)
       EXPECT_EQ(a.cell()->flips, 1u);
       EXPECT_GE(b.cell()->flips, 1u);
       const ForceMisfit misfit = misfit_of_forces(a.snapshot(), b.snapshot());
-      std::printf("300 steps later: forces differ by %.1e of the mean, stress by %.1e\n", misfit.force,
-                  stress_apart(a, b));
       EXPECT_BELOW_BECAUSE(misfit.force, 1e-6, "round-off of coordinates over overlaps, grown in 300 steps of sliding");
       EXPECT_BELOW_BECAUSE(stress_apart(a, b), 1e-6, "that of forces");
     }
@@ -145,10 +139,6 @@ TEST(NarrowCell, GoesTheSameWayAsOneThatIsTwiceAsLong)
         const Vec3 between = to_fraction * (two.packing().centre(i + period) - one.packing().centre(i));
         apart = std::max(apart, (between - Vec3(between.array().round())).norm());
       }
-  std::printf(
-      "cell %.3f d wide, periods %.3f d, of two periods %.3f d wide; after 0.2 %% of strain grains are %.1e of an "
-      "edge apart, stress %.1e of itself\n",
-      width_over_diameter(one), periods_over_diameter(one), width_over_diameter(two), apart, stress_apart(one, two));
   EXPECT_LT(width_over_diameter(one), 2);
   EXPECT_GT(periods_over_diameter(one), 2);
   EXPECT_GT(width_over_diameter(two), 2);

@@ -39,7 +39,6 @@ TEST(CellSpecimen, K0ConsolidationKeepsLateralStrainAndReachesTheVerticalStress)
   assembly.compute_forces();
   const Mat3 stress = -assembly.stress();
   const double k0 = 0.5 * (stress(0, 0) + stress(2, 2)) / stress(1, 1);
-  std::printf("K0 = %.3f\n", k0);
   EXPECT_NEAR_BECAUSE(stress(1, 1) / 200e3, 1, 3e-3, "the servo of the preparation stops within 0.3 %");
   EXPECT_GT(k0, 0.3);
   EXPECT_BELOW_BECAUSE(k0, 0.8, "less than isotropic: friction carries a part of the vertical stress");
@@ -85,9 +84,6 @@ TEST(CellSimpleShear, TurnsAtItsStressRatio)
   stage.stress_ratio = 0.12;
   stage.max_cycles = 3;
   const Result result = run({stage}, cell(), 20);
-  std::printf("cyclic simple shear: %g reversals, overshoot %.1f Pa, volume within %.1e\n",
-              static_cast<double>(result.state.undrained.reversals), result.state.undrained.worst_overshoot,
-              result.watcher.change_of_volume());
   EXPECT_EQ(result.state.undrained.reversals, 6u);
   EXPECT_GE(result.state.undrained.worst_overshoot, 0);
   EXPECT_LT(result.state.undrained.worst_overshoot, 500);
@@ -127,10 +123,6 @@ TEST(CellProgramme, ASmallCellIsShearedToThreeHundredPercent)
       }
   const auto &last = result.last();
   const double diameters = result.watcher.narrowest / (2 * small.grains.max_radius());
-  std::printf("cell down to %.3f diameters wide; %llu steps, %llu flips; tau/sigma_v %.3f on average beyond 100 %%, p' "
-              "%.0f kPa at the end\n",
-              diameters, static_cast<unsigned long long>(result.end.step),
-              static_cast<unsigned long long>(result.end.cell->flips), tau / sigma, last.seen.p / 1e3);
   EXPECT_BELOW_BECAUSE(diameters, 2, "the cell has been narrow");
   EXPECT_NEAR_BECAUSE(last.seen.gamma, 3, 1e-3, "the last step overshoots");
   EXPECT_GE(result.end.cell->flips, 3u);

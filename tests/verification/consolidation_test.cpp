@@ -6,7 +6,6 @@
 #include "tests/support/near.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <gmock/gmock.h>
 #include <limits>
@@ -62,7 +61,7 @@ struct Terzaghi
     if (tv < 0.05)
       return std::erf(way / (2 * std::sqrt(tv))) - std::erfc((2 - way) / (2 * std::sqrt(tv)));
     double sum = 0;
-    for (int m = 0; m < 200; ++m)
+    for (int m = 0; m < 30; ++m) // of which the last is exp(-400)
       {
         const double b = (2 * m + 1) * std::numbers::pi / 2;
         sum += 2 / b * std::sin(b * way) * std::exp(-b * b * tv);
@@ -74,7 +73,7 @@ struct Terzaghi
     if (tv < 0.05)
       return 2 * std::sqrt(tv / std::numbers::pi);
     double sum = 1;
-    for (int m = 0; m < 200; ++m)
+    for (int m = 0; m < 30; ++m)
       {
         const double b = (2 * m + 1) * std::numbers::pi / 2;
         sum -= 2 / (b * b) * std::exp(-b * b * tv);
@@ -120,8 +119,6 @@ TEST(Consolidation, LoadAtOnceIsCarriedByTheWater)
   for (unsigned k = 0; k <= 20; ++k)
     error = std::max(error, std::abs(column.pressure(0.5 * k) - 1));
   const double settlement = load * height / (modulus + column.biot_modulus);
-  std::printf("p0/q = %.4f, error %.1e; settlement error %.1e\n", column.p0() / load, error,
-              std::abs(column.settlement() / settlement - 1));
   EXPECT_NEAR_BECAUSE(column.p0() / load, 0.971, 5e-4, "the digits given");
   EXPECT_BELOW_BECAUSE(error, solved);
   EXPECT_NEAR_BECAUSE(column.settlement() / settlement, 1, solved);
@@ -130,9 +127,10 @@ TEST(Consolidation, LoadAtOnceIsCarriedByTheWater)
 
 TEST(Consolidation, SoilWithoutPermeabilityKeepsItsWaterAtADrainedFace)
 {
-  Terzaghi column(column_of(5, 0));
+  Terzaghi column(column_of(20, 0));
   column.statics.step_undrained();
-  column.statics.step(1e6);
+  for (int k = 0; k < 10; ++k)
+    column.statics.step(1e6);
   for (const Place &corner : column.space.corner)
     EXPECT_NEAR_BECAUSE(column.pressure(corner[2]), 1, solved) << corner[2];
   EXPECT_NEAR_BECAUSE(column.settlement() / column.at_once(), 1, solved);
@@ -147,8 +145,6 @@ TEST(Consolidation, PressureAndSettlementFollowTerzaghi)
     {
       column.run(tv, 100);
       const double p_error = column.largest_pressure_error(tv), u = column.degree();
-      std::printf("T_v %.3f: base p/p0 %.6f, largest error of p/p0 %.1e; U %.6f, error %.1e\n", tv, column.pressure(0),
-                  p_error, u, u - Terzaghi::exact_degree(tv));
       EXPECT_BELOW_BECAUSE(p_error, discretised) << tv;
       EXPECT_NEAR_BECAUSE(u, Terzaghi::exact_degree(tv), discretised) << tv;
       if (tv == 0.197)
@@ -182,7 +178,6 @@ TEST(Consolidation, IsOfSecondOrderInTime)
       double error = 0;
       for (std::size_t k = 0; k < values.size(); ++k)
         error = std::max(error, std::abs(values[k] - reference[k]));
-      std::printf("%3u steps: error %.2e, order %.2f\n", steps, error, before > 0 ? std::log2(before / error) : 0.0);
       if (before > 0)
         {
           EXPECT_NEAR_BECAUSE(std::log2(before / error), 2, 0.25,
@@ -201,7 +196,6 @@ TEST(Consolidation, IsOfSecondOrderInTheMesh)
       column.statics.step_undrained();
       column.run(0.2, 400);
       const double error = column.largest_pressure_error(0.2);
-      std::printf("%2u cells: error %.2e, order %.2f\n", cells, error, before > 0 ? std::log2(before / error) : 0.0);
       if (before > 0)
         {
           EXPECT_GT(std::log2(before / error), 1.8);
@@ -210,23 +204,8 @@ TEST(Consolidation, IsOfSecondOrderInTheMesh)
     }
 }
 
-/// Steps that grow by a fifth each: 45 instead of hundreds.
-TEST(Consolidation, GrowingStepsAreAsAccurate)
-{
-  Terzaghi column(column_of(60));
-  column.statics.step_undrained();
-  double duration = 2e-5 * column.seconds_per_tv;
-  unsigned n = 0;
-  for (; column.statics.time() < 0.3 * column.seconds_per_tv; ++n, duration *= 1.2)
-    column.statics.step(duration);
-  const double tv = column.statics.time() / column.seconds_per_tv;
-  const double error = column.largest_pressure_error(tv);
-  std::printf("%u growing steps to T_v %.3f: largest error of p/p0 %.1e\n", n, tv, error);
-  EXPECT_BELOW_BECAUSE(error, 5e-3, "steps that have grown to a fifth of the time");
-}
-
 /// Any first time and any number of steps, over six decades: the mesh is refined for the first time, and long steps are
-/// divided. The last of `cases` are the worst of other meshes and of 2,000 steps.
+/// divided. The last of `cases` are the worst of other meshes and of 500 steps.
 TEST(Consolidation, FirstTimesAndFewStepsAreAsAccurate)
 {
   struct Case
@@ -237,10 +216,10 @@ TEST(Consolidation, FirstTimesAndFewStepsAreAsAccurate)
   };
   std::vector<Case> cases;
   for (const std::vector<Face> &drained : {std::vector{Face::surface}, {Face::surface, Face::base}})
-    for (const double first : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0})
+    for (const double first : {1e-6, 1e-4, 1e-2, 1.0})
       for (const unsigned steps : {20, 200})
         cases.push_back({drained, first, steps, 20});
-  cases.push_back({{Face::surface}, 1e-5, 2000, 20});
+  cases.push_back({{Face::surface}, 1e-5, 500, 20});
   cases.push_back({{Face::surface}, 1e-5, 50, 2});
   cases.push_back({{Face::surface}, 1, 2, 2});
   for (const auto &[drained, first, steps, cells] : cases)
@@ -265,9 +244,6 @@ TEST(Consolidation, FirstTimesAndFewStepsAreAsAccurate)
               lowest = std::min(lowest, column.pressure(corner[2]));
             }
         }
-      std::printf("%zu drained, T_v from %.0e, %4u steps, %2u cells refined to %3zu: error of p/p0 %.4f, of the "
-                  "settlement %.4f; p/p0 from %.1e to 1 + %.1e\n",
-                  drained.size(), first, steps, cells, column.space.n_cells(), p, u, lowest, highest - 1);
       EXPECT_BELOW_BECAUSE(p, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
       EXPECT_BELOW_BECAUSE(u, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
       EXPECT_BELOW_BECAUSE(highest - 1, 3e-5, "the pressure is flat where cells are too large for its front");
@@ -293,7 +269,6 @@ TEST(Consolidation, CoarseCellsAreRightFromTheirBoundOn)
                                         std::abs(column.settlement() / column.exact_settlement(tv) - 1));
           (t < bound ? before : after) = std::max(t < bound ? before : after, error);
         }
-      std::printf("%2u cells: largest error %.3f before 1.5 h2/c, %.4f after it\n", cells, before, after);
       EXPECT_GT(before, 0.1);
       EXPECT_BELOW_BECAUSE(after, 0.02, "what the bound says");
     }
@@ -331,8 +306,6 @@ TEST(Consolidation, CoarseCellsShowTheSkinOfAHarmonicLoadFromTheirBoundOn)
           for (const Place &corner : column.space.corner)
             nodes = std::max(nodes, std::abs(column.pressure(corner[2]) - exact(corner[2], t)));
         }
-      std::printf("cells of %.3f sqrt(2 c/omega): largest error of p/p0 %.4f at points, %.4f at nodes\n", cells_of_skin,
-                  points, nodes);
       if (cells_of_skin <= cells_per_skin)
         {
           EXPECT_BELOW_BECAUSE(points, 0.02, "what the bound says");
@@ -343,18 +316,6 @@ TEST(Consolidation, CoarseCellsShowTheSkinOfAHarmonicLoadFromTheirBoundOn)
         }
       EXPECT_BELOW_BECAUSE(nodes, 0.29, "2 - sqrt(3) of the skin's pressure, in the limit of large cells");
     }
-}
-
-/// Only the cell at the drained surface feels it.
-TEST(Consolidation, WithoutPermeabilityNothingDrains)
-{
-  Terzaghi column(column_of(20, 0.0));
-  column.statics.step_undrained();
-  for (int k = 0; k < 10; ++k)
-    column.statics.step(1e6);
-  EXPECT_NEAR_BECAUSE(column.pressure(0), 1, 1e-9, "the cells damp what the surface does to them by a factor each");
-  EXPECT_NEAR_BECAUSE(column.pressure(height / 2), 1, 1e-4,
-                      "the cells damp what the surface does to them by a factor each, ten of them here");
 }
 
 /// The time law of a load that grows is followed inside an undrained step as well: twice half is the whole.

@@ -41,28 +41,6 @@ struct Series
   }
 };
 
-void print(const std::string &title, double time_step, const std::vector<Series> &all)
-{
-  std::printf("%s\n%10s", title.c_str(), "dt (s)");
-  for (const Series &s : all)
-    std::printf("  %22s  order", s.name.c_str());
-  std::printf("\n");
-  for (std::size_t level = 0; level < all[0].errors.size(); ++level)
-    {
-      std::printf("%10.3e", std::ldexp(time_step, -static_cast<int>(level)));
-      for (const Series &s : all)
-        if (level == 0)
-          std::printf("  %22.3e       ", s.errors[0]);
-        else
-          std::printf("  %22.3e  %5.2f", s.errors[level], s.order(level - 1));
-      std::printf("\n");
-    }
-  std::printf("%10s", "mean");
-  for (const Series &s : all)
-    std::printf("  %22s  %5.2f", "", s.mean_order());
-  std::printf("\n");
-}
-
 /// The orders of the finer half of the series: further up, terms of higher order still count.
 void expect_order(const Series &s, double minimum, double maximum)
 {
@@ -204,8 +182,6 @@ TEST(Convergence, NormalOscillationIsOfSecondOrder)
       positions.errors.push_back(x_error / squeeze);
       velocities.errors.push_back(v_error / (w1 * squeeze));
     }
-  print("two grains between walls, normal oscillation, error against the exact solution", duration / 50,
-        {positions, velocities});
   expect_order(positions, 1.95, 2.05);
   expect_order(velocities, 1.95, 2.05);
 }
@@ -234,8 +210,6 @@ TEST(Convergence, ElasticShearRollingAndTwistingAreOfSecondOrder)
       bending.errors.push_back((c.bending_moment - f.bending_moment).norm() / f.bending_moment.norm());
       twisting.errors.push_back((c.twisting_moment - f.twisting_moment).norm() / f.twisting_moment.norm());
     }
-  print("two grains between walls, shear, rolling and twisting, difference to dt/2", drive.duration / 50,
-        {position, shear, bending, twisting});
   for (const Series &series : {position, shear, bending, twisting})
     expect_order(series, 1.9, 2.1);
 }
@@ -272,8 +246,6 @@ TEST(Convergence, RotationOfHistoryIsOfFirstOrder)
       twisting.errors.push_back((h.twisting_moment - turned(begin.twisting_moment, duration)).norm() /
                                 begin.twisting_moment.norm());
     }
-  print("rigid rotation by 1 rad, relative error against the exact rotation", duration / 2000,
-        {shear, bending, twisting});
   for (const Series &series : {shear, bending, twisting})
     {
       expect_order(series, 0.9, 1.1);
@@ -323,7 +295,7 @@ void compare_ends(const Snapshot &start, const Snapshot &end, PackingSeries &ser
 
 /// Constant-volume shear by `strain` sin^2(pi t/2T), T = 200 of the longest steps (a wave crosses the box in about 50);
 /// differences between runs at dt and dt/2 over the way of the grains and the change of stress.
-PackingSeries sheared_packing(const std::string &title, const Snapshot &s, double strain, double damping)
+PackingSeries sheared_packing(const Snapshot &s, double strain, double damping)
 {
   const double duration = 8e-6;
   const RigidBox reference = s.box;
@@ -345,9 +317,6 @@ PackingSeries sheared_packing(const std::string &title, const Snapshot &s, doubl
       series.stress.errors.push_back((runs[k].wall_stress() - runs[k + 1].wall_stress()).norm() / change);
     }
   compare_ends(s, runs.back().snapshot(), series);
-  std::printf("%s: change of stress %.3g Pa; %zu contacts, %zu opened, %zu closed, %zu slide at the end\n",
-              title.c_str(), change, s.contacts.size(), series.opened, series.closed, series.sliding);
-  print("difference to dt/2", duration / 200, {series.position, series.stress});
   return series;
 }
 
@@ -355,7 +324,7 @@ TEST(Convergence, ElasticPackingIsOfSecondOrder)
 {
   // A strain so small that no contact opens, closes or yields, and so large that the errors are above round-off
   // (1e-16 of positions is 1e-9 of the way of the grains).
-  const PackingSeries s = sheared_packing("elastic packing, no damping", packing_at_rest(elastic_law()), 1e-7, 0);
+  const PackingSeries s = sheared_packing(packing_at_rest(elastic_law()), 1e-7, 0);
   EXPECT_EQ(s.opened + s.closed + s.sliding, 0u);
   expect_order(s.position, 1.9, 2.1);
   expect_order(s.stress, 1.9, 2.1);
@@ -370,8 +339,7 @@ TEST(Convergence, YieldingPackingIsOfFirstOrder)
   // scatter, their mean over the series is what is asked for.
   for (const double strain : {1e-5, 1e-4})
     {
-      const PackingSeries s =
-          sheared_packing("sliding packing, no damping", packing_at_rest(test::paper_law()), strain, 0);
+      const PackingSeries s = sheared_packing(packing_at_rest(test::paper_law()), strain, 0);
       EXPECT_GT(s.sliding, 10u);
       EXPECT_GT(s.position.mean_order(), 0.7);
       EXPECT_LT(s.position.mean_order(), 1.7);
@@ -384,13 +352,11 @@ TEST(Convergence, LocalDampingIsOfFirstOrder)
 {
   // Damping changes by 2 d |A| where a velocity passes zero, and does so at the next step: an error of the impulse of
   // up to d |A| dt each time.
-  const PackingSeries elastic =
-      sheared_packing("elastic packing, damping 0.2", packing_at_rest(elastic_law()), 1e-7, 0.2);
+  const PackingSeries elastic = sheared_packing(packing_at_rest(elastic_law()), 1e-7, 0.2);
   EXPECT_EQ(elastic.opened + elastic.closed + elastic.sliding, 0u);
   expect_order(elastic.position, 0.8, 1.3);
   EXPECT_GT(elastic.stress.mean_order(), 0.8);
-  const PackingSeries s =
-      sheared_packing("sliding packing, damping 0.2", packing_at_rest(test::paper_law()), 1e-5, 0.2);
+  const PackingSeries s = sheared_packing(packing_at_rest(test::paper_law()), 1e-5, 0.2);
   EXPECT_GT(s.position.mean_order(), 0.7);
   EXPECT_LT(s.position.mean_order(), 1.7);
   EXPECT_BELOW_BECAUSE(s.position.errors[0], 2e-3, "first order at the longest step: 1e-3 of the way");

@@ -108,9 +108,6 @@ TEST(Momentum, OfAnIsolatedClusterIsKeptToRoundOff)
           linear_size = std::max(linear_size, now.linear_size);
           angular_size = std::max(angular_size, now.angular_size);
         }
-      std::printf("drift %g m/s: %zu contacts in 100 looks; change of linear momentum %.1e, angular %.1e of the sum of "
-                  "magnitudes\n",
-                  drift, collisions, linear / linear_size, angular / angular_size);
       EXPECT_GT(collisions, 100u);
       EXPECT_BELOW_BECAUSE(linear, 1e-13 * linear_size, "round-off of 5,000 steps, 1e-16 each, that adds up at random");
       EXPECT_BELOW_BECAUSE(angular, 1e-13 * angular_size,
@@ -166,8 +163,6 @@ TEST_P(PackingAtRest, WallStressIsLoveWeberStress)
   const Vec3 wall = wall_stress(s);
   const double p = invariants(wall).p;
   const double misfit = (contact.diagonal() - wall).cwiseAbs().maxCoeff() / p;
-  std::printf("%s: p' = %.3f kPa, largest difference of wall and Love-Weber stress %.1e p'\n", GetParam(), p / 1e3,
-              misfit);
   EXPECT_NEAR_BECAUSE(p, 200e3, 0.1e3, "the servo stopped within 0.05 % of its pressure");
   EXPECT_BELOW_BECAUSE(misfit, 1e-4, "forces unbalanced by 1e-4 where the specimen was stored");
   // moments about each grain cancel, too: the tensor is symmetric

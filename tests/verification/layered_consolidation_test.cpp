@@ -7,7 +7,6 @@
 #include "tests/support/near.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -184,9 +183,6 @@ TEST(LayeredConsolidation, SandUnderACapFollowsTheSeries)
                    base = (column.pressure(0) - exact.pressure(0, t)) / surcharge,
                    u = column.down(middle) / exact.settlement_of_sand(t) - 1,
                    all = column.down(top) / (exact.settlement_of_sand(t) + exact.settlement_of_cap(t)) - 1;
-      std::printf("  t = %6.0f s: p under the cap %.3f of the surcharge (%+.1e), base (%+.1e), settlement of the sand "
-                  "(%+.1e), of the surface (%+.1e)\n",
-                  t, column.pressure(middle) / surcharge, p, base, u, all);
       for (double error : {p, base, u, all})
         EXPECT_NEAR_BECAUSE(error, 0, 1e-3, "steps that grow by a twentieth each, 40 elements a layer");
     }
@@ -216,9 +212,6 @@ TEST_P(DrainedClay, FollowsTheSeriesFromTheFirstTimeOn)
       for (const Place &corner : column.space.corner)
         p = std::max(p, std::abs(column.pressure(corner[2]) - exact.pressure(corner[2], t)) / surcharge);
       const double u = column.down(6) / (exact.settlement_of_sand(t) + exact.settlement_of_cap(t)) - 1;
-      std::printf("  T_v of the clay %.3f, %zu elements: largest error of p %.4f of the surcharge, of the settlement "
-                  "%+.4f\n",
-                  1e-3 * std::pow(3, k), column.space.n_cells(), p, u);
       EXPECT_BELOW_BECAUSE(p, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
       EXPECT_NEAR_BECAUSE(u, 0, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
     }
@@ -260,9 +253,6 @@ TEST(LayeredConsolidation, WaterThatLeavesTheSandGoesThroughTheCap)
       out_of_cap += 125 * (out + flow(top, -h));
     }
   const double left_sand = out_of_sand() - sand_before, left = out_of_both() - both_before;
-  std::printf(
-      "  water out of the sand %.5f mm, into the cap %.5f mm; out of both %.5f mm, out of the surface %.5f mm\n",
-      1e3 * left_sand, 1e3 * into_cap, 1e3 * left, 1e3 * out_of_cap);
   EXPECT_NEAR_BECAUSE(into_cap / left_sand, 1, 2e-3, "second order in elements of 5 cm and in the steps");
   EXPECT_NEAR_BECAUSE(out_of_cap / left, 1, 2e-3, "second order in elements of 5 cm and in the steps");
 }
@@ -282,9 +272,6 @@ TEST(LayeredConsolidation, AirTakesItsShareOfALoad)
   constexpr int n = 1000;
   for (int k = 0; k < n; ++k)
     settlement += surcharge * height / n / (modulus + 1 / storage((k + 0.5) * height / n));
-  std::printf(
-      "  S = 0.99: share of the water %.4f at the base, %.4f at the surface, error %.1e; settlement error %.1e\n",
-      column.pressure(0) / surcharge, column.pressure(height) / surcharge, worst, column.down(height) / settlement - 1);
   EXPECT_BELOW_BECAUSE(worst, 1e-3, "the pressure is linear in each of 20 elements");
   EXPECT_NEAR_BECAUSE(column.down(height) / settlement, 1, 1e-4, "the pressure is linear in each of 20 elements");
 }
@@ -300,8 +287,6 @@ TEST(LayeredConsolidation, AViscousFluidTakesLongerInProportion)
     return column.down(10);
   };
   const double water = settled(1, 1), viscous = settled(30, 30);
-  std::printf("  30 times as viscous, after 30 times the time: settlement %.9g mm, %.1e from that with water\n",
-              1e3 * viscous, viscous / water - 1);
   EXPECT_CLOSE_BECAUSE(viscous, water, 1e-12, "round-off: the same equations in another unit of time");
   EXPECT_GT(water, 2 * settled(30, 1));
 }

@@ -7,7 +7,6 @@
 #include "tests/support/near.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <gmock/gmock.h>
 #include <numbers>
 
@@ -70,9 +69,12 @@ struct Mandel
   {
     double sum = 0;
     for (double y : roots)
-      if (y * y * t < 50)
+      {
+        if (y * y * t > 50)
+          break;
         sum += std::sin(y) / (y - std::sin(y) * std::cos(y)) * (std::cos(y * x / half_width) - std::cos(y)) *
                std::exp(-y * y * t);
+      }
     return 2 * at_once() * sum;
   }
   /// Of the plate, Cheng & Detournay 1988 (doi:10.1002/nag.1610120508), m.
@@ -80,8 +82,11 @@ struct Mandel
   {
     double sum = 0;
     for (double y : roots)
-      if (y * y * t < 50)
+      {
+        if (y * y * t > 50)
+          break;
         sum += std::sin(y) * std::cos(y) / (y - std::sin(y) * std::cos(y)) * std::exp(-y * y * t);
+      }
     return force * thickness / (elastic.shear_modulus * half_width) *
            ((1 - elastic.poisson_ratio) / 2 - (1 - nu_u) * sum);
   }
@@ -105,7 +110,6 @@ TEST(Mandel, PressureRisesThenFalls)
   Mandel slab(slab_of(cells, 2));
   slab.statics.step_undrained();
   const double p0 = slab.at_once();
-  std::printf("nu_u %.4f, B %.4f; p(0+)/exact - 1 = %.1e\n", slab.nu_u, slab.skempton, slab.pressure(0) / p0 - 1);
   EXPECT_NEAR_BECAUSE(slab.pressure(0) / p0, 1, 1e-9, "a direct solution: round-off times the condition of the system");
   EXPECT_NEAR_BECAUSE(slab.pressure(half_width / 2, thickness) / p0, 1, 1e-9,
                       "a direct solution: round-off times the condition of the system");
@@ -125,13 +129,10 @@ TEST(Mandel, PressureRisesThenFalls)
           const double x = half_width * k / cells;
           error = std::max(error, std::abs(slab.pressure(x) - slab.exact(x, t)) / p0);
         }
-      std::printf("ct/a2 %.2f: p/p(0+) in the middle %.4f, exact %.4f; largest error %.1e\n", t, slab.pressure(0) / p0,
-                  slab.exact(0, t) / p0, error);
       EXPECT_BELOW_BECAUSE(error, 1e-2,
                            "second order in cells and steps, and the layer at the drained face at early times")
           << t;
     }
-  std::printf("highest p/p(0+) in the middle %.4f, exact %.4f\n", highest / p0, exact_highest / p0);
   EXPECT_GT(highest / p0, 1.05);
   EXPECT_NEAR_BECAUSE(highest / p0, exact_highest / p0, 5e-3,
                       "second order in cells and steps, and the peak between two steps");
@@ -144,7 +145,7 @@ TEST(Mandel, PressureRisesThenFalls)
 TEST(Mandel, FirstTimesAndFewStepsAreAsAccurate)
 {
   std::vector<std::pair<double, unsigned>> cases;
-  for (const double first : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0})
+  for (const double first : {1e-6, 1e-4, 1e-2, 1.0})
     for (const unsigned steps : {20, 200})
       cases.emplace_back(first, steps);
   for (const auto &[first, steps] : cases)
@@ -164,14 +165,13 @@ TEST(Mandel, FirstTimesAndFewStepsAreAsAccurate)
           slab.statics.step(t * seconds - slab.statics.time());
           for (const Place &corner : slab.space.corner)
             {
+              if (corner[2] > 0)
+                continue; // nothing varies upwards
               p = std::max(p, std::abs(slab.pressure(corner[0]) - slab.exact(corner[0], t)) / slab.at_once());
               lowest = std::min(lowest, slab.pressure(corner[0]) / slab.at_once());
             }
           u = std::max(u, std::abs(slab.settlement() / slab.exact_settlement(t) - 1));
         }
-      std::printf("ct/a2 from %.0e, %4u steps, 20 x 1 cells refined to %zu: error of p/p(0+) %.4f, of the settlement "
-                  "%.5f; smallest p/p(0+) %.1e\n",
-                  first, steps, slab.space.n_cells(), p, u, lowest);
       EXPECT_BELOW_BECAUSE(p, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
       EXPECT_BELOW_BECAUSE(u, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
       EXPECT_BELOW_BECAUSE(-lowest, 3e-5, "BDF2 rings below zero when a step is longer than the last mode");

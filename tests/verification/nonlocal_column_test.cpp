@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <gtest/gtest.h>
 
 namespace isostat
@@ -84,9 +83,6 @@ Outcome sheared(unsigned cells, const NonlocalParameters &nonlocal, int steps)
   outcome.largest = *std::max_element(shear.begin(), shear.end());
   outcome.thickness = half_value_width(space, shear);
   outcome.stress = statics.reaction({Face::surface, 0});
-  std::printf("%u elements, l = %g m, A %g, %d steps: %.5g Pa, thickness %.4g m, largest strain %.4g, %u iterations\n",
-              cells, nonlocal.length, nonlocal.stiffness, steps, outcome.stress, outcome.thickness, outcome.largest,
-              outcome.iterations);
   return outcome;
 }
 } // namespace

@@ -29,11 +29,6 @@ void expect_same_verdict(const CyclicConstantVolume &own_stage, Path path, const
                        : run({dynamic_cast<const UndrainedCyclicSimpleShear &>(own_stage)}, specimen);
   const Result general = run({path}, specimen);
   const UndrainedRecord &a = own.state.undrained, &b = general.state.undrained;
-  std::printf("%s: %s after %llu reversals (%llu at onset), path: %s after %llu (%llu)\n", own_stage.kind(),
-              response_name(a, own_stage.mode()), static_cast<unsigned long long>(a.reversals),
-              static_cast<unsigned long long>(a.reversals_to_liquefaction()), response_name(b, path.mode()),
-              static_cast<unsigned long long>(b.reversals),
-              static_cast<unsigned long long>(b.reversals_to_liquefaction()));
   EXPECT_STREQ(response_name(b, path.mode()), response_name(a, own_stage.mode()));
   EXPECT_EQ(b.reversals, a.reversals);
   EXPECT_EQ(b.liquefaction.has_value(), a.liquefaction.has_value());
@@ -46,12 +41,12 @@ TEST(PathCycles, HaveTheVerdictOfTheKindsOfTheirOwn)
 {
   UndrainedCyclic triaxial;
   triaxial.reversals_after_liquefaction = 100;
-  triaxial.max_strain = 0.1;
-  triaxial.max_cycles = 5;
+  triaxial.max_strain = 0.05;
+  triaxial.max_cycles = 4;
   for (const auto &[degrees, amplitude] : {std::pair{8.0, 50e3}, {8.0, 120e3}, {18.0, 30e3}}) // none, and two of flow
     {
       triaxial.deviator_amplitude = amplitude;
-      expect_same_verdict(triaxial, keeping(PathCondition::volume, PathCondition::volume, 0), specimen(500, degrees),
+      expect_same_verdict(triaxial, keeping(PathCondition::volume, PathCondition::volume, 0), specimen(300, degrees),
                           200e3);
     }
   UndrainedCyclicSimpleShear shear;
@@ -142,11 +137,9 @@ TEST(PathEnd, ThatIsMetWhenItBeginsIsTold)
   ASSERT_EQ(result.state.ends.size(), 1u);
   EXPECT_TRUE(result.state.ends[0].at_once);
   const std::string text = to_text(result.state.ends[0], stages);
-  EXPECT_NE(
-      text.find("ended in its first step, because one of its conditions was met when it began: until.strain = 1 % (0 % "
-                "reached), until.q = 0.05 kPa"),
-      std::string::npos)
-      << text;
+  expect_parts(text,
+               {"ended in its first step, because one of its conditions was met when it began: until.strain = 1 % "
+                "(0 % reached), until.q = 0.05 kPa"});
   EXPECT_EQ(std::count(result.watcher.events.begin(), result.watcher.events.end(), text), 1);
   path.end.q = 5e3;
   const Result later = run({path}, box());
@@ -165,8 +158,7 @@ TEST(PathEnd, ThatItsLimitOfStepsComesBeforeIsToldAndKept)
   ASSERT_EQ(whole.state.ends.size(), 2u);
   EXPECT_FALSE(is_early(whole.state.ends[1], stages));
   const std::string text = to_text(whole.state.ends[0], stages);
-  EXPECT_NE(text.find("stage 0 (path): ended by max_steps = 300"), std::string::npos) << text;
-  EXPECT_NE(text.find("until.strain = 1 % (0."), std::string::npos) << text;
+  expect_parts(text, {"stage 0 (path): ended by max_steps = 300", "until.strain = 1 % (0."});
 }
 
 /// At constant p' no friction angle gives such a q.
@@ -178,18 +170,10 @@ TEST(PathEnd, ThatIsOutOfReachFailsAtOneHundredPercent)
   Assembly assembly(box());
   DriveState state;
   Watcher watcher;
-  try
-    {
-      run_programme(programme({path}, 1'000'000), assembly, state, watcher);
-      FAIL() << "q of 900 kPa was reached at p' = 200 kPa";
-    }
-  catch (const RunFailure &failure)
-    {
-      const std::string what = failure.what();
-      EXPECT_EQ(what.find("step "), 0u) << what;
-      for (const char *part : {"stage 0 (path) has gone 100", "until.q = 900 kPa (", "Give until.strain or max_steps"})
-        EXPECT_NE(what.find(part), std::string::npos) << what;
-    }
+  const std::string what =
+      message_of<RunFailure>([&] { run_programme(programme({path}, 1'000'000), assembly, state, watcher); });
+  EXPECT_EQ(what.find("step "), 0u) << what;
+  expect_parts(what, {"stage 0 (path) has gone 100", "until.q = 900 kPa (", "Give until.strain or max_steps"});
   EXPECT_NEAR_BECAUSE(state.loading.strain, 1, 1e-3, "a step");
 }
 

@@ -31,8 +31,6 @@ TEST(PathTrueTriaxial, KeepsPAndB)
       const double p = result.watcher.worst(200e3, [](const auto &row) { return row.seen.p; }) / 200e3;
       const double b = result.watcher.worst(
           0.5, [](const auto &row) { return b_of(row.seen.stress); }, 60e3);
-      std::printf("constant p' and b: p' within %.2e, b within %.2e, q at the end %.1f kPa\n", p, b,
-                  result.last().seen.q / 1e3);
       EXPECT_BELOW_BECAUSE(p, 0.005, "single rows of 500 or 1,000 grains, while the servo follows");
       EXPECT_BELOW_BECAUSE(b, 0.01, "the same, of a difference of stresses of 60 kPa and more");
       EXPECT_GT(result.last().seen.q, 80e3);
@@ -49,7 +47,6 @@ TEST(PathDrained, KeepsStressAndDrivesAnyAxis)
   double off = 0;
   for (const auto &row : result.watcher.rows)
     off = std::max({off, std::abs(row.seen.stress[1] / 200e3 - 1), std::abs(row.seen.stress[2] / 200e3 - 1)});
-  std::printf("lateral loading: kept stresses within %.2e\n", off);
   EXPECT_BELOW_BECAUSE(off, 0.02, "the servo follows a load that grows by some kPa in its response time");
   EXPECT_GT(result.last().seen.stress[0], 250e3);
   EXPECT_LT(result.last().seen.q, -30e3);
@@ -114,7 +111,6 @@ TEST(PathConsolidation, GoesAlongAStraightLineAndDoesNotCount)
         const double share = (row.seen.stress[1] - 200e3) / 70e3;
         off = std::max(off, std::abs(row.seen.stress[0] - (200e3 - 50e3 * share)) / 200e3);
       }
-  std::printf("anisotropic consolidation: off the straight line by %.2e of p'\n", off);
   EXPECT_BELOW_BECAUSE(off, 0.02, "the servo lags behind a moving target");
   EXPECT_BELOW_BECAUSE((reached - target).norm(), 0.01 * 200e3, "each within 0.5 % of p'");
   EXPECT_NEAR_BECAUSE(result.state.path.p0() / 200e3, 1, 0.01, "that of the end of the consolidation");
@@ -193,7 +189,6 @@ TEST_F(PathFile, IsFollowedThroughTheDeviatoricPlane)
       off = std::max(off,
                      std::abs(row.seen.stress[k] - path.table().value(static_cast<PathQuantity>(k), row.place, 200e3)));
   const double p = result.watcher.worst(200e3, [](const auto &row) { return row.seen.p; }) / 200e3;
-  std::printf("deviatoric plane: stresses within %.0f Pa, p' within %.2e\n", off, p);
   EXPECT_BELOW_BECAUSE(off, 2e3, "the servo lags behind a moving target");
   EXPECT_BELOW_BECAUSE(p, 0.005, "the same, of the mean");
 }
@@ -249,10 +244,7 @@ TEST(PathProgramme, RepeatsAndGoesOnToTheSameBits)
       run_programme(programme(stages), assembly, state, watcher);
       kept = assembly.checkpoint();
     }
-  EXPECT_EQ(kept.step, whole.end.step);
-  EXPECT_EQ(kept.grains.position, whole.end.grains.position);
-  EXPECT_EQ(kept.grains.velocity, whole.end.grains.velocity);
-  EXPECT_EQ(kept.cell->edges, whole.end.cell->edges);
+  expect_same_bits(kept, whole.end);
 }
 } // namespace
 } // namespace isostat

@@ -5,7 +5,6 @@
 #include "tests/support/near.hpp"
 #include "tests/support/transfer_function.hpp"
 
-#include <cstdio>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -67,14 +66,12 @@ TEST(ShearLayer, ExactTransferFunctionIsThatOfTheBook)
 TEST(ShearLayer, RigidBase)
 {
   const double error = transfer_error({.mass_damping = 1}, {});
-  std::printf("  rigid base, 40 elements of degree 2, dt = 0.25 ms: %.2e\n", error);
   EXPECT_BELOW_BECAUSE(error, 1e-3, "second order in dt = 0.25 ms, up to the highest frequency compared");
 }
 
 TEST(ShearLayer, CompliantBase)
 {
   const double error = transfer_error({}, {.duration = 20, .compliant = true});
-  std::printf("  compliant base, 40 elements of degree 2, dt = 0.25 ms: %.2e\n", error);
   EXPECT_BELOW_BECAUSE(error, 1e-3, "second order in dt = 0.25 ms, up to the highest frequency compared");
 }
 
@@ -84,7 +81,6 @@ TEST(ShearLayer, SecondOrderInTheTimeStep)
   for (double dt : {5e-4, 2.5e-4, 1.25e-4})
     {
       const double error = transfer_error({.mass_damping = 1}, {.time_step = dt});
-      std::printf("  dt = %.1e s: %.3e, order %.2f\n", dt, error, before > 0 ? order(before, error) : 0.0);
       if (before > 0)
         {
           EXPECT_NEAR_BECAUSE(order(before, error), 2, 0.15, "terms of higher order in the step");
@@ -100,8 +96,6 @@ TEST(ShearLayer, ViscosityIsFirstOrderInTheTimeStep)
     {
       const double error =
           transfer_error({.viscosity = 5e-4}, {.cells = 20, .time_step = dt, .duration = 20, .compliant = true});
-      std::printf("  beta = 0.5 ms, dt = %.2e s: %.3e, order %.2f\n", dt, error,
-                  before > 0 ? order(before, error) : 0.0);
       if (before > 0)
         {
           EXPECT_NEAR_BECAUSE(order(before, error), 1, 0.3,
@@ -111,7 +105,6 @@ TEST(ShearLayer, ViscosityIsFirstOrderInTheTimeStep)
     }
   EXPECT_BELOW_BECAUSE(before, 2e-3, "beta omega times half of omega dt, at 10 Hz and over the travel time");
   const double usual = transfer_error({.viscosity = 1e-4}, {.duration = 20, .compliant = true});
-  std::printf("  beta = 0.1 ms, dt = 0.25 ms: %.2e\n", usual);
   EXPECT_BELOW_BECAUSE(usual, 1e-3, "as without viscosity: the default one is smaller than the step");
 }
 
@@ -124,8 +117,6 @@ TEST(ShearLayer, SecondOrderInTheMeshOrBetter)
         {
           const double error = transfer_error(
               {}, {.cells = cells, .degree = degree, .time_step = 5e-5, .duration = 8, .compliant = true});
-          std::printf("  degree %u, %u elements: %.3e, order %.2f\n", degree, cells, error,
-                      before > 0 ? order(before, error) : 0.0);
           if (before > 0)
             {
               EXPECT_GT(order(before, error), degree == 1 ? 1.8 : 2.0);
@@ -158,7 +149,6 @@ TEST(ShearLayer, AbsorbingBaseReturnsNothing)
       if (t > 1.0 + 2.5 * travel) // the pulse has gone down through the base
         left = std::max(left, std::abs(found));
     }
-  std::printf("  pulse at the surface: error %.2e of its peak; what comes back: %.2e\n", worst / peak, left / peak);
   EXPECT_BELOW_BECAUSE(worst / peak, 1e-3, "second order in the step, and dispersion of elements of degree 2");
   EXPECT_BELOW_BECAUSE(left / peak, 1e-3, "what the dashpots reflect: second order in the step");
 }

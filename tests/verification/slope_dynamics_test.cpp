@@ -7,7 +7,6 @@
 #include "tests/support/near.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -79,7 +78,6 @@ TEST(SlopeDynamics, WhatLiquefiesSpreadsDownslope)
           run.step();
           largest = std::max({largest, run.energy().kinetic, std::abs(run.energy().internal)});
         }
-      std::printf("slope of 4 deg, motion %+g: the surface has moved %.3f m downslope\n", sign, surface(run, space));
       EXPECT_GT(surface(run, space), 0.05);
       EXPECT_BELOW_BECAUSE(std::abs(run.energy().residual()), 1e-9 * largest, "round-off of 1e4 steps");
     }
@@ -144,12 +142,9 @@ TEST(SlopeDynamics, NewmarksSlidingBlock)
   const Motion pulse(upslope, 1e-4);
   EXPECT_NEAR_BECAUSE(sliding_block(pulse, 1.5) / exact, 1, 1e-3, "the pulse ends within a sample of 0.1 ms");
   const double column = sliding_column(pulse, 1.5);
-  std::printf("rectangular pulse: %.4f m, block %.4f m (%+.2f %%)\n", column, exact, 100 * (column / exact - 1));
   EXPECT_NEAR_BECAUSE(column / exact, 1, plastic);
   const Motion sine = harmonic_motion(7, 2, 1.5, 0.25, 1e-3);
   const double of_block = sliding_block(sine, 3), of_column = sliding_column(sine, 3);
-  std::printf("sine of three cycles: %.4f m, block %.4f m (%+.2f %%)\n", of_column, of_block,
-              100 * (of_column / of_block - 1));
   EXPECT_NEAR_BECAUSE(of_column / of_block, 1, plastic);
   // up the slope the block would yield at g (M cos + sin) = 8.1 m/s2
   EXPECT_BELOW_BECAUSE(std::abs(sliding_column(Motion(downslope, 1e-4), 0.35)), 2e-3,

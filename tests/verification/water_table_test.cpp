@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -73,7 +72,6 @@ TEST(WaterTable, SoilBelowConsolidatesAsIfTheTableWereItsSurface)
           error = std::max(error, std::abs(statics.pressure().local_element(space.find_pressure({0, 0, z})) / p0 -
                                            exact_pressure(z, tv)));
         }
-      std::printf("T = %.1f below the table: pressure within %.1e of Terzaghi's\n", tv, error);
       EXPECT_BELOW_BECAUSE(error, 1e-3, "60 cells and 100 steps, second order in both");
     }
   const std::vector<double> pressure = statics.point_pressure();
@@ -109,8 +107,6 @@ TEST(WaterTable, WavesDrainAtTheTable)
           }
         else
           error = std::max(error, std::abs(pressure[q] - expected) / load);
-      std::printf("k = %g m/s: pressure %.4f of the load below the table, within %.1e\n", permeability, expected / load,
-                  error);
       EXPECT_BELOW_BECAUSE(error, 1e-3, "at rest after 6 s: exp(-8)");
     }
 }

@@ -74,16 +74,8 @@ TEST(Bytes, YesAndNoAreOneAndZero)
 TEST(Bytes, SayWhoReadsAndWhatHelps)
 {
   ByteReader in({}, "a packed element", "pack it again");
-  try
-    {
-      in.count();
-      FAIL();
-    }
-  catch (const InputError &error)
-    {
-      EXPECT_THAT(error.what(),
-                  testing::AllOf(testing::StartsWith("a packed element: "), testing::EndsWith("pack it again")));
-    }
+  EXPECT_THAT([&] { in.count(); }, testing::ThrowsMessage<InputError>(testing::AllOf(
+                                       testing::StartsWith("a packed element: "), testing::EndsWith("pack it again"))));
 }
 } // namespace
 } // namespace isostat

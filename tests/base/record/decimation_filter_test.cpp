@@ -6,7 +6,6 @@
 #include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <gmock/gmock.h>
 #include <numbers>
 
@@ -50,8 +49,6 @@ TEST(DecimationFilter, PassesWhatRowsCanShowAndNothingElse)
         stop = std::max(stop, std::abs(gain(stride, f).first));
       for (double f : {0.05, 0.2, 0.375, 0.7})
         delay = std::max(delay, gain(stride, f).second);
-      std::printf("  stride %3zu: passes within %.1e, stops to %.1e, gain at 0.375 %.3f\n", stride, pass, stop,
-                  gain(stride, 0.375).first);
       EXPECT_BELOW_BECAUSE(pass, 0.006, "Kaiser's window of 50 dB");
       EXPECT_BELOW_BECAUSE(stop, 0.003, "Kaiser's window of 50 dB");
       EXPECT_BELOW_BECAUSE(delay, 1e-12, "symmetric weights: round-off");

@@ -9,16 +9,11 @@ namespace isostat
 {
 namespace
 {
+using test::simple_shear;
+
 RveElement element(bool undrained, unsigned halvings = 6)
 {
   return {Rve(test::soft_specimen(4), {}), {{}, undrained, halvings}};
-}
-
-Mat3 shear(double size)
-{
-  Mat3 h = Mat3::Zero();
-  h(0, 1) = size;
-  return h;
 }
 } // namespace
 
@@ -27,8 +22,8 @@ TEST(RveElement, EachTrialStartsFromTheCommittedState)
   RveElement tried = element(true), straight = element(true);
   for (int k = 0; k < 80; ++k) // beyond the 500 steps after which the way back is shortened
     {
-      const Mat3 h = shear(2e-5 * std::sin(0.9 * k));
-      tried.trial(shear(1e-4));
+      const Mat3 h = simple_shear(2e-5 * std::sin(0.9 * k));
+      tried.trial(simple_shear(1e-4));
       EXPECT_EQ(tried.trial(h).stress, straight.trial(h).stress) << k;
       tried.commit(), straight.commit();
     }
@@ -53,22 +48,20 @@ TEST(RveElement, TrialsLeaveNoTraceWhereTheCellIsExchangedForOthersOfItsLattice)
   const Assembly &now = tried.rve().assembly();
   for (int k = 0; k < 90; ++k)
     {
-      tried.trial(shear(0.03)); // also through every flip that comes next
+      tried.trial(simple_shear(0.03)); // also through every flip that comes next
       trials_through_a_flip += now.cell()->flips != flips;
       if (k % 3 == 0)
         {
           tried.rollback();
           ASSERT_EQ(now.cell()->flips, flips);
         }
-      const ElementTrial got = tried.trial(shear(0.02)), expected = straight.trial(shear(0.02));
+      const ElementTrial got = tried.trial(simple_shear(0.02)), expected = straight.trial(simple_shear(0.02));
       ASSERT_TRUE(expected.accepted) << expected.reason;
       ASSERT_EQ(got.stress, expected.stress) << k;
       tried.commit(), straight.commit();
       flips = now.cell()->flips;
       narrowest = std::min(narrowest, now.cell()->widths().minCoeff() / (2 * now.packing().max_radius()));
     }
-  std::printf("%llu flips, %d of them in trials that were given up; the cell was %.3f diameters wide\n",
-              static_cast<unsigned long long>(flips), trials_through_a_flip, narrowest);
   EXPECT_GE(flips, 2u);
   EXPECT_GE(trials_through_a_flip, 2);
   EXPECT_LT(narrowest, 2);
@@ -78,7 +71,7 @@ TEST(RveElement, TrialsLeaveNoTraceWhereTheCellIsExchangedForOthersOfItsLattice)
 TEST(RveElement, RollbackLeavesNoTrace)
 {
   RveElement tried = element(true), straight = element(true);
-  tried.trial(shear(1e-4));
+  tried.trial(simple_shear(1e-4));
   EXPECT_NE(tried.rve().stress(), straight.rve().stress());
   tried.rollback();
   EXPECT_EQ(tried.rve().stress(), straight.rve().stress());
@@ -90,7 +83,7 @@ TEST(RveElement, ItsCommittedStateIsMeasuredDuringATrial)
 {
   RveElement tried = element(true);
   const Mat3 committed = tried.rve().stress();
-  const Mat3 stress = tried.trial(shear(1e-4)).stress;
+  const Mat3 stress = tried.trial(simple_shear(1e-4)).stress;
   EXPECT_EQ(tried.at_committed([](const Rve &rve) { return rve.stress(); }), committed);
   EXPECT_EQ(tried.rve().stress(), stress);
 }
@@ -99,23 +92,23 @@ TEST(RveElement, RejectedIncrementsAreTakenInParts)
 {
   RveElement tried = element(false);
   Rve alone(test::soft_specimen(4), {});
-  const Mat3 large = shear(0.03); // beyond what an element takes at once
+  const Mat3 large = simple_shear(0.03); // beyond what an element takes at once
   const Mat3 stress = tried.trial(large).stress;
   for (int k = 0; k < 4; ++k)
     alone.advance(Mat3(large / 4)); // simple shear: powers of H vanish
   EXPECT_EQ(stress, alone.stress());
-  tried.trial(shear(1e-5));
+  tried.trial(simple_shear(1e-5));
   EXPECT_EQ(tried.trial(large).stress, stress);
 }
 
 TEST(RveElement, SaysWhatItCannotTake)
 {
   RveElement tried = element(true, 1);
-  const ElementTrial trial = tried.trial(shear(0.9));
+  const ElementTrial trial = tried.trial(simple_shear(0.9));
   EXPECT_FALSE(trial.accepted);
   EXPECT_THAT(trial.reason,
               testing::StartsWith("an increment of displacement gradient of 0.9 cannot be applied, even in 2 "));
-  EXPECT_FALSE(tried.trial(shear(std::nan(""))).accepted);
-  EXPECT_TRUE(tried.trial(shear(1e-5)).accepted);
+  EXPECT_FALSE(tried.trial(simple_shear(std::nan(""))).accepted);
+  EXPECT_TRUE(tried.trial(simple_shear(1e-5)).accepted);
 }
 } // namespace isostat

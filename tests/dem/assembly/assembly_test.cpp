@@ -8,11 +8,12 @@
 #include "dem/measure/stress.hpp"
 #include "dem/measure/unbalanced.hpp"
 #include "tests/support/near.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/specimens.hpp"
 
 #include <gmock/gmock.h>
 
-#include <cstring>
 #include <limits>
 
 namespace isostat
@@ -53,47 +54,16 @@ void shear(Assembly &assembly, int steps)
     }
 }
 
-bool same_bits(const AlignedVector<double> &a, const AlignedVector<double> &b)
-{
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), 8 * a.size()) == 0;
-}
-
 void expect_same_motion(const Assembly &a, const Assembly &b)
 {
-  EXPECT_EQ(a.step(), b.step());
-  EXPECT_EQ(a.time(), b.time());
-  EXPECT_EQ(a.box().lower, b.box().lower);
-  EXPECT_EQ(a.box().upper, b.box().upper);
-  EXPECT_TRUE(same_bits(a.packing().position, b.packing().position));
-  EXPECT_TRUE(same_bits(a.packing().velocity, b.packing().velocity));
-  EXPECT_TRUE(same_bits(a.packing().spin, b.packing().spin));
+  test::expect_same_bits(a.checkpoint(), b.checkpoint());
   EXPECT_EQ(a.wall_forces(), b.wall_forces());
 }
 
-void expect_same_contacts(const Snapshot &a, const Snapshot &b)
+void expect_same_measures(const Assembly &a, const Assembly &b)
 {
-  ASSERT_EQ(a.contacts.size(), b.contacts.size());
-  for (std::size_t c = 0; c < a.contacts.size(); ++c)
-    {
-      EXPECT_EQ(a.contacts[c].first, b.contacts[c].first);
-      EXPECT_EQ(a.contacts[c].second, b.contacts[c].second);
-      EXPECT_EQ(a.contacts[c].history.normal, b.contacts[c].history.normal);
-      EXPECT_EQ(a.contacts[c].history.shear_force, b.contacts[c].history.shear_force);
-      EXPECT_EQ(a.contacts[c].history.bending_moment, b.contacts[c].history.bending_moment);
-      EXPECT_EQ(a.contacts[c].history.twisting_moment, b.contacts[c].history.twisting_moment);
-    }
-}
-
-void expect_same_energy(const EnergyBalance &a, const EnergyBalance &b)
-{
-  EXPECT_EQ(a.boundary_work, b.boundary_work);
-  EXPECT_EQ(a.kinetic, b.kinetic);
-  EXPECT_EQ(a.elastic, b.elastic);
-  EXPECT_EQ(a.sliding, b.sliding);
-  EXPECT_EQ(a.rolling, b.rolling);
-  EXPECT_EQ(a.released, b.released);
-  EXPECT_EQ(a.damping, b.damping);
-  EXPECT_EQ(a.created, b.created);
+  test::expect_same_bits(a.snapshot(), b.snapshot());
+  test::expect_same_bits(a.energy(), b.energy());
 }
 
 /// The run that stopped, taken up from what a checkpoint keeps.
@@ -109,19 +79,13 @@ std::string failure_of(Snapshot start, int steps_before)
 {
   start.step = 40;
   Assembly assembly = make_assembly(start);
-  try
-    {
-      for (int step = 0; step <= steps_before; ++step)
-        {
-          assembly.compute_forces();
-          assembly.move(assembly.box());
-        }
-    }
-  catch (const RunFailure &failure)
-    {
-      return failure.what();
-    }
-  return "no failure";
+  return test::refusal<RunFailure>([&] {
+    for (int step = 0; step <= steps_before; ++step)
+      {
+        assembly.compute_forces();
+        assembly.move(assembly.box());
+      }
+  });
 }
 } // namespace
 
@@ -136,7 +100,6 @@ TEST(Assembly, StressesAreThoseOfTheMeasures)
       const Vec3 wall = wall_stress(s), contact = contact_stress(s).diagonal();
       const double wall_error = (assembly.wall_stress() - wall).norm() / wall.norm();
       const double contact_error = (assembly.contact_stress() - contact).norm() / contact.norm();
-      std::printf("after %d steps: wall stress %.1e, contact stress %.1e\n", steps, wall_error, contact_error);
       EXPECT_BELOW_BECAUSE(wall_error, 1e-12, "round-off of sums in another order");
       EXPECT_BELOW_BECAUSE(contact_error, 1e-12, "round-off of sums in another order");
       assembly.move(next_box(assembly.box()));
@@ -209,8 +172,7 @@ TEST(Assembly, TwoRunsAreEqualToTheBit)
   a.compute_forces();
   b.compute_forces();
   expect_same_motion(a, b);
-  expect_same_contacts(a.snapshot(), b.snapshot());
-  expect_same_energy(a.energy(), b.energy());
+  expect_same_measures(a, b);
 }
 
 TEST(Assembly, MeasuringChangesNoBit)
@@ -248,8 +210,7 @@ TEST(Assembly, GoesOnFromACheckpointToTheBit)
       whole.compute_forces();
       after.compute_forces();
       expect_same_motion(whole, after);
-      expect_same_contacts(whole.snapshot(), after.snapshot());
-      expect_same_energy(whole.energy(), after.energy());
+      expect_same_measures(whole, after);
     }
 }
 
@@ -296,7 +257,7 @@ TEST(Assembly, FailureNamesStepAndGrain)
                                        Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
   EXPECT_THAT(failure_of(spinning, 0), HasSubstr("is not a number"));
 
-  EXPECT_EQ(failure_of(packing_at_pressure(), 20), "no failure");
+  EXPECT_EQ(failure_of(packing_at_pressure(), 20), "accepted");
 }
 
 TEST(Assembly, ComputingForcesTwiceIsTheSameAsOnce)

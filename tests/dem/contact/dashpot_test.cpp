@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Dashpots in contacts: how two grains part, and where the energy goes. The loop against its scalar twin:
-// loop_test.cpp, cell_loop_test.cpp; the time step: critical_step_test.cpp.
+// loop_test.cpp; the time step: critical_step_test.cpp.
 #include "dem/contact/dashpot.hpp"
 
 #include "dem/assembly/assembly.hpp"

@@ -63,8 +63,6 @@ Mat3 summed(const std::vector<Term> &terms, std::size_t n_chunks, const Place &p
 }
 using Place = std::pair<std::size_t, std::size_t>;
 Place one_lane(std::size_t) { return {0, 0}; }
-
-bool same_bits(const Mat3 &a, const Mat3 &b) { return (a.array() == b.array()).all(); }
 } // namespace
 
 TEST(Virial, OrderLanesAndChunksChangeNoBit)
@@ -80,8 +78,8 @@ TEST(Virial, OrderLanesAndChunksChangeNoBit)
     {
       std::shuffle(terms.begin(), terms.end(), engine);
       const std::size_t chunks = 1 + engine() % 7, lanes = std::size_t{1} << engine() % 4;
-      EXPECT_TRUE(same_bits(
-          summed(terms, chunks, [&](std::size_t) { return Place(engine() % chunks, engine() % lanes); }), expected));
+      EXPECT_EQ(summed(terms, chunks, [&](std::size_t) { return Place(engine() % chunks, engine() % lanes); }),
+                expected);
     }
   for (const Term &t : terms)
     shuffled_plain += t.force.dot(t.branch);
@@ -94,7 +92,7 @@ TEST(Virial, TermsThatAreZeroChangeNoBit)
   const Mat3 expected = summed(terms, 1, one_lane);
   for (std::size_t t = 0; t < 1000; t += 3)
     terms.insert(terms.begin() + t, {Vec3::Zero(), Vec3(1e-4, -2e-4, 3e-4)});
-  EXPECT_TRUE(same_bits(summed(terms, 3, [](std::size_t t) { return Place(t % 3, t % 8); }), expected));
+  EXPECT_EQ(summed(terms, 3, [](std::size_t t) { return Place(t % 3, t % 8); }), expected);
 }
 
 TEST(Virial, IsTheSumToRoundOffOfEVAndSymmetric)
@@ -115,7 +113,6 @@ TEST(Virial, IsTheSumToRoundOffOfEVAndSymmetric)
         error = std::max(error, std::abs(static_cast<double>(sum(i, j) - exact[i][j])));
         EXPECT_EQ(sum(i, j), sum(j, i));
       }
-  std::printf("error %.1e of the trace, %.1e of E V\n", error / sum.trace(), error / bound);
   // each term is off by half the grid, 2^-52 of what is at most 2 E V; 20,000 such errors at random add up as sqrt(N)
   EXPECT_LE(error, 6 * std::sqrt(20'000 / 12.0) * 2 * bound * 0x1p-52);
   EXPECT_BELOW_BECAUSE(error, 1e-10 * sum.trace(), "the bound above, were E V not far above the trace");
@@ -124,14 +121,14 @@ TEST(Virial, IsTheSumToRoundOffOfEVAndSymmetric)
 TEST(Virial, ChunksWithoutContactsAreZeroAndASetSumIsGivenBack)
 {
   Virial virial;
-  EXPECT_TRUE(same_bits(virial.sum(), Mat3::Zero()));
+  EXPECT_EQ(virial.sum(), Mat3::Zero());
   virial.start(5, bound);
-  EXPECT_TRUE(same_bits(virial.sum(), Mat3::Zero()));
+  EXPECT_EQ(virial.sum(), Mat3::Zero());
   Mat3 sum;
   sum << 1, 0.1, 0.7, 0.1, 3, -1e-17, 0.7, -1e-17, -1e9;
   virial.set(sum);
-  EXPECT_TRUE(same_bits(virial.sum(), sum));
+  EXPECT_EQ(virial.sum(), sum);
   virial.start(3, bound); // and starts again
-  EXPECT_TRUE(same_bits(virial.sum(), Mat3::Zero()));
+  EXPECT_EQ(virial.sum(), Mat3::Zero());
 }
 } // namespace isostat

@@ -102,8 +102,6 @@ TEST(CompactPeriods, AreTheShortestOfRandomLattices)
       leaning = std::min(leaning, widths(edges).minCoeff() / a);
       ++lattices;
     }
-  std::printf("widths of compact cells >= %.3f of the shortest period, of the given ones >= %.3f\n", narrowest,
-              leaning);
   EXPECT_GE(narrowest, std::sqrt(0.5));
   EXPECT_BELOW_BECAUSE(leaning, 0.3, "cells that lean by twice their edges: else nothing was to be found");
 }

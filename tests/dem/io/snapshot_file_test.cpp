@@ -2,9 +2,10 @@
 #include "dem/io/snapshot_file.hpp"
 
 #include "base/error.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-#include <cstring>
+#include <cmath>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -27,12 +28,6 @@ protected:
   }
 };
 
-template <typename T>
-bool same_bits(const T &a, const T &b)
-{
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(*a.data())) == 0;
-}
-
 TEST_F(SnapshotFile, APeriodicCellComesBackToTheBit)
 {
   Snapshot s = small_snapshot();
@@ -44,41 +39,17 @@ TEST_F(SnapshotFile, APeriodicCellComesBackToTheBit)
   s.cell->deform(gradient);
   s.cell->flips = 3;
   const Snapshot r = round_trip(s);
-  ASSERT_TRUE(r.cell.has_value());
-  for (auto m : {&PeriodicCell::edges, &PeriodicCell::deformation, &PeriodicCell::rotation, &PeriodicCell::strain_step})
-    EXPECT_TRUE(same_bits((*s.cell).*m, (*r.cell).*m));
-  EXPECT_EQ(s.cell->volume_strain, r.cell->volume_strain);
-  EXPECT_EQ(s.cell->reference_volume, r.cell->reference_volume);
-  EXPECT_EQ(s.cell->flips, r.cell->flips);
+  test::expect_same_bits(s, r);
   EXPECT_EQ(s.volume(), r.volume());
 }
 
 TEST_F(SnapshotFile, RoundTripToTheBit)
 {
   const Snapshot s = small_snapshot(), r = round_trip(s);
-  EXPECT_TRUE(same_bits(s.grains.position, r.grains.position)); // padding included
-  EXPECT_TRUE(same_bits(s.grains.velocity, r.grains.velocity));
-  EXPECT_TRUE(same_bits(s.grains.spin, r.grains.spin));
-  EXPECT_EQ(s.grains.id, r.grains.id);
-  EXPECT_EQ(s.grains.density, r.grains.density);
-  EXPECT_TRUE(same_bits(s.box.lower, r.box.lower) && same_bits(s.box.upper, r.box.upper));
-  EXPECT_TRUE(same_bits(s.strain, r.strain));
-  EXPECT_EQ(s.time, r.time);
-  EXPECT_EQ(s.step, r.step);
-  EXPECT_EQ(s.law->young, r.law->young);
-  EXPECT_EQ(s.law->friction, r.law->friction);
+  test::expect_same_bits(s, r); // padding included
+  EXPECT_EQ(s.strain, r.strain);
   EXPECT_TRUE(s.law == r.law);
-  ASSERT_EQ(r.contacts.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i)
-    {
-      const Contact &a = s.contacts[i], &b = r.contacts[i];
-      EXPECT_TRUE(a.first == b.first && a.second == b.second && a.overlap == b.overlap &&
-                  a.normal_force == b.normal_force);
-      EXPECT_TRUE(same_bits(a.history.normal, b.history.normal));
-      EXPECT_TRUE(same_bits(a.history.shear_force, b.history.shear_force));
-      EXPECT_TRUE(same_bits(a.history.bending_moment, b.history.bending_moment));
-      EXPECT_TRUE(same_bits(a.history.twisting_moment, b.history.twisting_moment));
-    }
+  EXPECT_TRUE(std::signbit(r.grains.linear_velocity(0)[2]));
   ASSERT_EQ(r.wall_contacts.size(), 1u);
   EXPECT_EQ(r.wall_contacts[0].grain, 0u);
   EXPECT_EQ(r.wall_contacts[0].wall, 0);

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "dem/scene/scene.hpp"
+#include "tests/support/same_bits.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <cmath>
@@ -32,21 +33,7 @@ void expect_same(const Specimen &a, const Specimen &b)
 {
   EXPECT_EQ(a.provenance, b.provenance);
   EXPECT_EQ(a.numbers, b.numbers);
-  EXPECT_EQ(a.state.grains.position, b.state.grains.position);
-  EXPECT_EQ(a.state.grains.velocity, b.state.grains.velocity);
-  EXPECT_EQ(a.state.grains.spin, b.state.grains.spin);
-  EXPECT_EQ(a.state.grains.id, b.state.grains.id);
-  ASSERT_EQ(a.state.contacts.size(), b.state.contacts.size());
-  for (std::size_t i = 0; i < a.state.contacts.size(); ++i)
-    {
-      EXPECT_EQ(a.state.contacts[i].overlap, b.state.contacts[i].overlap);
-      EXPECT_EQ(a.state.contacts[i].normal_force, b.state.contacts[i].normal_force);
-      EXPECT_EQ(a.state.contacts[i].history.shear_force, b.state.contacts[i].history.shear_force);
-      EXPECT_EQ(a.state.contacts[i].history.twisting_moment, b.state.contacts[i].history.twisting_moment);
-    }
-  ASSERT_TRUE(a.state.cell && b.state.cell);
-  EXPECT_EQ(a.state.cell->edges, b.state.cell->edges);
-  EXPECT_EQ(a.state.cell->volume_strain, b.state.cell->volume_strain);
+  test::expect_same_bits(a.state, b.state);
 }
 
 class SpecimenLibrary : public TemporaryFolder

@@ -128,8 +128,6 @@ Started started(bool carried, int stop = -1)
 TEST(CarriedGrainsInAPacking, FeelNoWavesOfWallsThatStart)
 {
   const Started pushed = started(false), carried = started(true);
-  std::printf("wall and contact stress differ by %.0f Pa, with carried grains %.0f Pa; residual/work %.1e\n",
-              pushed.difference, carried.difference, carried.energy.residual() / carried.energy.boundary_work);
   EXPECT_GT(pushed.difference, 2 * carried.difference);
   EXPECT_BELOW_BECAUSE(std::abs(carried.energy.residual()) / carried.energy.boundary_work, 1e-3,
                        "contacts that open and close; without carrying it is as large");

@@ -166,8 +166,6 @@ TEST(FreeGrainsInAPacking, ComeToRestWithIt)
           unbalanced[damped] = a.unbalanced_force_ratio();
           EXPECT_LT(a.stress().trace() / 3, -100e3) << "it carries load";
         }
-      std::printf("%s held for 10,000 steps: unbalanced %.1e, with rattlers damped %.1e\n", domain, unbalanced[0],
-                  unbalanced[1]);
       EXPECT_BELOW_BECAUSE(unbalanced[1], 1e-8, "local damping takes a factor e^-1 in some 500 steps");
       EXPECT_GT(unbalanced[0], 10 * unbalanced[1]);
     }

@@ -107,7 +107,6 @@ TEST(Rve, ARotatedFrameGivesTheRotatedStress)
                        "damping knows the axes; contacts amplify the difference, to 2e-3 by instruction set");
   EXPECT_BELOW_BECAUSE(worst_rotated, 5e-3,
                        "damping knows the axes; contacts amplify the difference, to 2e-3 by instruction set");
-  std::printf("to 0.1 %% shear: turned frame off by %.2e, turned packing by %.2e\n", worst_framed, worst_rotated);
 }
 
 TEST(Rve, ARotationTurnsStressAndCostsNoStrain)
@@ -299,7 +298,6 @@ TEST(Rve, StateIsSmall)
   const double z = 2.0 * static_cast<double>(specimen().contacts.size()) / n;
   const double per_grain = static_cast<double>(rve.save().bytes()) / n;
   const double at_five = per_grain + (5 - z) / 2 * (12 * 8 + 8);
-  std::printf("%.0f bytes per grain at %.2f contacts, %.0f at 5\n", per_grain, z, at_five);
   EXPECT_LE(at_five, 400);
 }
 

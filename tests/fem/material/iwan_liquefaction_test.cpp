@@ -17,8 +17,6 @@ TEST(Iwan, UndrainedCyclesLiquefy)
         {
           Sample s(sand);
           const Liquefaction r = shake(s, csr);
-          std::printf("CSR %.2f: r_u > 0.95 in %.1f cycles, then strains of %.1f %%, slopes %.2g to %.2g MPa\n", csr,
-                      r.cycles, 100 * r.strain, 1e-6 * r.softest, 1e-6 * r.stiffest);
           EXPECT_GT(r.cycles, 0);
           EXPECT_LT(r.cycles, before);
           before = r.cycles;

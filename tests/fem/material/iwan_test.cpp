@@ -43,8 +43,6 @@ TEST(Iwan, ElementsFitTheHyperbola)
             tau += b.weights[k] * std::min(x, b.yield_strains[k]);
           worst = std::max(worst, std::abs(tau * (1 + x) / x - 1));
         }
-      if (n % 4 == 0 && (n <= 32 || n % 32 == 0))
-        std::printf("%u elements: backbone within %.2f %% of the hyperbola\n", n, 100 * worst);
       if (n >= 8)
         {
           EXPECT_BELOW_BECAUSE(worst, 0.0205 * std::pow(12.0 / n, 1.35),
@@ -157,7 +155,6 @@ TEST(Iwan, MasingLoopsAndTheirDamping)
           }
       const double damping = work / (2 * std::numbers::pi * amplitude * top);
       const double expected = 4 / std::numbers::pi * (1 + 1 / x) * (1 - std::log1p(x) / x) - 2 / std::numbers::pi;
-      std::printf("strain %4.1f gamma_r: damping %.4f, hyperbola with Masing's rules %.4f\n", x, damping, expected);
       EXPECT_NEAR_BECAUSE(damping, expected, 0.012, "straight pieces within 1.8 %: areas of thin loops feel them most");
     }
 }

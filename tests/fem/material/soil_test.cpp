@@ -39,15 +39,12 @@ TEST(SoilProfile, EffectiveStressByHand)
   {
     double z, stress;
   } points[] = {{11, 0}, {10, 0}, {9.5, 4e3}, {9, 8e3}, {6.5, 33e3}, {4, 58e3}, {1, 94e3}, {0, 106e3}};
-  double largest = 0;
   for (const auto &[z, stress] : points)
     {
       EXPECT_NEAR_BECAUSE(soil.vertical_effective_stress(z), stress, 1e-9, "round-off of sums of 1e5 Pa") << z;
       EXPECT_NEAR_BECAUSE(soil.vertical_effective_stress(z, 20e3), stress + 20e3, 1e-9, "round-off of sums of 1e5 Pa")
           << z;
-      largest = std::max(largest, std::abs(soil.vertical_effective_stress(z) - stress));
     }
-  printf("effective stress of three layers: error %.1e Pa\n", largest);
 }
 
 TEST(SoilProfile, EffectiveStressIsContinuousAndItsSlopeIsTheSubmergedWeight)

@@ -62,7 +62,6 @@ TEST_F(MotionFile, RoundedTimesGiveTheMeanInterval)
   for (int i = 0; i <= 3000; ++i)
     text += (snprintf(row, sizeof row, "%.6f %d\n", i / 300.0, i % 7), row);
   const Motion m = read(text);
-  printf("times rounded to 1e-6 s: interval off by %.1e s\n", m.interval() - 1 / 300.0);
   EXPECT_NEAR_BECAUSE(m.interval(), 1 / 300.0, 1e-9,
                       "times rounded to 1e-6 s: a mean over 3,000 of them is off by 1e-6/3,000 at most");
 }

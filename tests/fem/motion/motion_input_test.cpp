@@ -65,7 +65,6 @@ TEST(Motion, LinearAccelerationIsIntegratedExactly)
       largest_difference([&](double t) { return m.velocity(t); }, [&](double t) { return c * t + s * t * t / 2; }, 3);
   const double d = largest_difference([&](double t) { return m.displacement(t); },
                                       [&](double t) { return c * t * t / 2 + s * t * t * t / 6; }, 3);
-  printf("linear acceleration: error of a %.1e m/s2, v %.1e m/s, d %.1e m\n", a, v, d);
   EXPECT_BELOW_BECAUSE(std::max({a, v, d}), 1e-14, "round-off: the integrals of a straight line are exact");
   EXPECT_EQ(m.peak(), 0.7);
   EXPECT_DOUBLE_EQ(m.duration(), 3);
@@ -140,7 +139,6 @@ TEST(Harmonic, ConvergesToTheClosedFormWithTheSquareOfTheInterval)
   for (int k = 0; k < 3; ++k)
     {
       const double order = std::log2(coarse[k] / fine[k]);
-      printf("harmonic, %c: error %.2e at 0.02 s, %.2e at 0.01 s, order %.3f\n", "avd"[k], coarse[k], fine[k], order);
       EXPECT_NEAR_BECAUSE(order, 2, 0.1, "terms of the fourth order");
     }
   EXPECT_BELOW_BECAUSE(fine[0], 2 * std::pow(2 * pi * 1.25 * 0.01, 2) / 8 * 1.01,
@@ -164,8 +162,6 @@ TEST(Harmonic, RampIsSmoothAndEndsTheDrift)
     }
   EXPECT_NEAR_BECAUSE(m.acceleration(10.125), 3, crest);
   EXPECT_NEAR_BECAUSE(m.velocity(20), 0, 1e-12, "the motion is odd about 10 s: round-off of a sum of 4,000 samples");
-  printf("harmonic: displacement at the end %.3f m with a ramp, %.3f m without\n", m.displacement(20),
-         sudden.displacement(20));
   EXPECT_BELOW_BECAUSE(std::abs(m.displacement(20)), 0.01 * sudden.displacement(20),
                        "with a ramp the motion comes back: the straight lines between samples leave parts of (w dt)^2");
 }
@@ -217,7 +213,6 @@ TEST(Ricker, ConvergesToTheClosedFormWithTheSquareOfTheInterval)
   for (int k = 0; k < 3; ++k)
     {
       const double order = std::log2(coarse[k] / fine[k]);
-      printf("Ricker, %c: error %.2e at 0.01 s, %.2e at 0.005 s, order %.3f\n", "avd"[k], coarse[k], fine[k], order);
       EXPECT_NEAR_BECAUSE(order, 2, 0.1, "terms of the fourth order");
     }
   const Motion m = ricker_motion(2, 2, 1, 0.005);
@@ -250,8 +245,6 @@ TEST(Baseline, BothEndWithoutVelocity)
   for (const Baseline b : {Baseline::mean, Baseline::quadratic})
     {
       const Motion c = corrected(m, b);
-      printf("baseline %d: velocity at the end %.3f -> %.1e m/s, displacement %.2f -> %.2f m\n", int(b), m.velocity(40),
-             c.velocity(40), m.displacement(40), c.displacement(40));
       EXPECT_BELOW_BECAUSE(std::abs(c.velocity(40)), 1e-12, "round-off of a sum of 4,000 samples");
       EXPECT_EQ(c.displacement(50), c.displacement(40) + c.velocity(40) * 10);
     }
@@ -271,8 +264,6 @@ TEST(Baseline, QuadraticTakesAParabolaOffWhole)
     return largest_difference([&](double t) { return a.displacement(t); }, [&](double t) { return b.displacement(t); },
                               40);
   };
-  printf("baseline: drifted against clean %.1e m, twice against once %.1e m, parabola alone leaves %.1e m/s2\n",
-         difference(clean, drifted), difference(twice, drifted), only.peak());
   EXPECT_BELOW_BECAUSE(difference(clean, drifted), 1e-10,
                        "round-off of sums of 4,000 samples, integrated twice over 40 s");
   EXPECT_BELOW_BECAUSE(difference(twice, drifted), 1e-10,
@@ -280,7 +271,6 @@ TEST(Baseline, QuadraticTakesAParabolaOffWhole)
   EXPECT_BELOW_BECAUSE(only.peak(), 1e-12, "round-off of a linear system of three unknowns");
   // A clean record stays what it was, except for its own slow part.
   const double change = largest_difference([&](double t) { return clean.acceleration(t); }, record, 40);
-  printf("baseline: clean record of peak %.2f m/s2 changed by %.1e m/s2\n", clean.peak(), change);
   EXPECT_BELOW_BECAUSE(change, 0.02 * clean.peak(), "the slow part of the record itself, 2 % of its peak at most");
 }
 

@@ -6,7 +6,6 @@
 #include "tests/fem/solve/secant_material.hpp"
 #include "tests/support/near.hpp"
 
-#include <cstdio>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -86,8 +85,6 @@ TEST(StaticsRelaxation, PassesThePeakInAnyStep)
           iterations += column.statics->effort().iterations;
           EXPECT_EQ(column.statics->effort().rejected, 0u);
         }
-      std::printf("%d steps: %u iterations, stress %.6g Pa, exact %.6g Pa\n", steps, iterations, column.stress(),
-                  stress_past_peak(0.01));
       EXPECT_CLOSE_BECAUSE(column.stress(), stress_past_peak(0.01), 1e-5,
                            "tolerance of 1e-7 over a column that is some tens of times as soft as its parts");
     }
@@ -100,7 +97,6 @@ TEST(StaticsRelaxation, LeavesAnEquilibriumThatNoSoilKeeps)
   SofteningColumn newton({.tolerance = 1e-7}), relaxation(relaxed);
   newton.statics->step(0.01);
   relaxation.statics->step(0.01);
-  std::printf("Newton %.5g Pa, relaxation %.5g Pa\n", newton.stress(), relaxation.stress());
   EXPECT_GT(newton.stress(), 0.9 * strong.stress(0.01)) << "as steep as it is, the residual leads there";
   EXPECT_CLOSE_BECAUSE(relaxation.stress(), stress_past_peak(0.01), 1e-5, "tolerance of 1e-7");
 }
@@ -146,7 +142,6 @@ TEST(StaticsRelaxation, StiffensAMassThatIsTooSoft)
       settings.tractions = {{Face::surface, [](double t, const Place &) { return Place{1e5 * t, 0, 0}; }}};
       Statics statics(space, soil, settings);
       statics.step(1);
-      std::printf("moduli of waves times %.2f: %u iterations\n", part, statics.effort().iterations);
       EXPECT_CLOSE_BECAUSE(statics.stresses()[0][4], 1e5, 1e-5, "tolerance of 1e-7");
     }
 }
@@ -182,7 +177,6 @@ TEST(StaticsRelaxation, WithPoreWaterIsNewtonsConsolidation)
       settlement[k] = statics.displacement().local_element(space.find_dof({0, 0, 1}, 2));
       EXPECT_EQ(statics.effort().rejected, 0u);
     }
-  std::printf("settlement %.9g m, relaxed %.9g m\n", settlement[0], settlement[1]);
   EXPECT_LT(settlement[0], 0);
   EXPECT_CLOSE_BECAUSE(settlement[1], settlement[0], 1e-5, "tolerance of 1e-7");
 }

@@ -5,7 +5,6 @@
 #include "tests/fem/solve/secant_material.hpp"
 #include "tests/support/near.hpp"
 
-#include <cstdio>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -75,8 +74,6 @@ void patch_test(unsigned degree)
   const std::vector<Place> places = space.node_places();
   for (unsigned i = 0; i < places.size(); ++i)
     error = std::max(error, std::abs(statics.displacement().local_element(i) - linear_field<dim>(i % 3, places[i])));
-  std::printf("patch, %dD, degree %u: displacement %.1e m, stress %.1e of the largest; %u iterations\n", dim, degree,
-              error, stress_error / 5e4, statics.effort().iterations);
   EXPECT_BELOW_BECAUSE(error, 1e-15, "round-off of displacements of 1e-3 m");
   EXPECT_BELOW_BECAUSE(stress_error, 1e-12 * 5e4, "round-off of strains, over the size of a cell");
   EXPECT_EQ(statics.effort().iterations, 1u);
@@ -113,8 +110,6 @@ TEST(Statics, BiaxialTestWithReactions)
   const double d = elastic.bulk_modulus() + 4 * elastic.shear_modulus / 3, lambda = d - 2 * elastic.shear_modulus;
   const double e_z = -2e-3 / 1.7, e_x = (-2e4 - lambda * e_z) / d, stress = lambda * e_x + d * e_z;
   const double top = statics.reaction({Face::surface, 2}), bottom = statics.reaction({Face::base, 2});
-  std::printf("plate %.6f N, base %.6f N, side %.6f N; stress times width %.6f N\n", top, bottom,
-              statics.reaction({Face::x_low, 0}), stress * 1.5);
   EXPECT_NEAR_BECAUSE(top / (stress * 1.5), 1, linear);
   EXPECT_NEAR_BECAUSE(bottom / (-stress * 1.5), 1, linear);
   EXPECT_NEAR_BECAUSE(statics.reaction({Face::x_low, 0}), 2e4 * 1.7, 1e-7,
@@ -164,8 +159,6 @@ TEST(Statics, NewtonConvergesQuadraticallyTowardsAHyperbola)
   Statics statics(space, soil, settings);
   statics.step(1);
   const double exact = 0.95e5 / 5e7 / (1 - 0.95);
-  std::printf("hyperbola: error %.1e, %u iterations\n", surface_shift(space, statics) / exact - 1,
-              statics.effort().iterations);
   EXPECT_NEAR_BECAUSE(surface_shift(space, statics) / exact, 1, 1e-9,
                       "Newton's tolerance of 1e-12, over a tangent that is 1/400 of the first");
   EXPECT_LE(statics.effort().iterations, 9u);
@@ -180,8 +173,6 @@ TEST(Statics, LineSearchInALockingSoil)
   Statics statics(space, soil, sheared(1e6));
   statics.step(1);
   const double g = surface_shift(space, statics), tau = 5e7 * (g + g * g * g / 1e-8);
-  std::printf("locking: error %.1e, %u iterations, %u trials\n", tau / 1e6 - 1, statics.effort().iterations,
-              statics.effort().trials);
   EXPECT_NEAR_BECAUSE(tau / 1e6, 1, 1e-7, "Newton's tolerance, 1e-8 of the forces, and room");
   EXPECT_GT(statics.effort().trials, statics.effort().iterations);
   EXPECT_LE(statics.effort().iterations, 12u);
@@ -199,7 +190,6 @@ TEST(Statics, KeptTangentGivesTheSameAnswer)
     settings.newton.max_iterations = 100;
     Statics statics(space, soil, settings);
     statics.step(1);
-    std::printf("tangent kept for %u iterations: %u iterations\n", iterations_per_tangent, statics.effort().iterations);
     return surface_shift(space, statics);
   };
   const double newton = run(1);

@@ -71,8 +71,6 @@ void patch_test(unsigned degree)
       if (!on_boundary)
         inside = std::max(inside, std::abs(f.local_element(i)));
     }
-  std::printf("  %dD, degree %u: gradient %.1e, balance %.1e, work %.1e\n", dim, degree, worst, inside,
-              std::abs(work / (power * volume) - 1));
   EXPECT_BELOW_BECAUSE(worst, summed);
   EXPECT_BELOW_BECAUSE(inside, summed);
   EXPECT_NEAR_BECAUSE(work, power * volume, 1e-10 * work, "round-off of sums over all points");

@@ -11,7 +11,6 @@
 #include "tests/support/near.hpp"
 #include "tests/support/refusal.hpp"
 
-#include <cstdio>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -62,17 +61,14 @@ double error_at_rest(const Case &c)
   while (run.time() < 1.5)
     run.step();
   const std::vector<double> found = run.point_pressure();
-  double worst = 0, largest = 0, smallest_ratio = 1e9;
+  double worst = 0, largest = 0;
   for (std::size_t q = 0; q < found.size(); ++q)
     {
       const PoreFluid fluid = pore_fluid(space.mesh().soil, space.mesh().soil.layers[0], space.position[q][2]);
       const double exact = at_rest(fluid, c.load);
       worst = std::max(worst, std::abs(found[q] - exact));
       largest = std::max(largest, std::abs(exact));
-      smallest_ratio = std::min(smallest_ratio, fluid.storage(exact) / fluid.storage(0));
     }
-  std::printf("  S = %.4f, h = %.2f, load %+.0f kPa: p to %.1f kPa, storage to %.3g of that in situ, error %.1e\n",
-              c.saturation, c.henry, 1e-3 * c.load, 1e-3 * largest, smallest_ratio, worst / largest);
   return worst / largest;
 }
 } // namespace
@@ -139,7 +135,6 @@ TEST(AirPressure, SmallPressuresSeeTheStiffnessInSitu)
   const std::vector<double> linear = shaken(AirLaw::constant, 1);
   const double small = difference(shaken(AirLaw::boyle, 0.01), linear),
                large = difference(shaken(AirLaw::boyle, 1), linear);
-  std::printf("  Boyle's law against constant stiffness: %.1e at 0.01 m/s2, %.1e at 1 m/s2\n", small, large);
   EXPECT_BELOW_BECAUSE(small, 1e-3, "p over the absolute pressure, 60 Pa in 140 kPa");
   EXPECT_NEAR_BECAUSE(large / small, 100, 20, "first order in the amplitude, and what is of second order");
 }
@@ -193,8 +188,6 @@ TEST(AirPressure, DilatingSandDrawsAirOutOfSolution)
     return p;
   };
   const double tension = lowest(AirLaw::constant, 0), bounded = lowest(AirLaw::boyle, 0.02);
-  std::printf("  lowest excess pressure %.1f kPa without air, %.1f kPa with air in solution\n", 1e-3 * tension,
-              1e-3 * bounded);
   EXPECT_LT(tension, -101325 - 9810 * height); // below zero, absolute, at any depth
   EXPECT_GT(bounded, -101325 - 9810 * height);
   EXPECT_LT(bounded, -20e3);

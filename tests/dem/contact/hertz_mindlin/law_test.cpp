@@ -145,8 +145,6 @@ TEST_P(LammpsPath, IsFollowedToRoundOff)
       rolling += law.yield({r1, r2, f.overlap, f.normal_force, history}, yield_round_off).rolling;
       opened += !f.touching, sliding += f.touching && fs >= 0.999999 * limit, sticking += fs > 0 && fs < 0.99 * limit;
     }
-  std::printf("%s: %.1e %.1e %.1e; %zu steps slide, %zu stick, %zu are apart\n", GetParam(), error[0] / largest[0],
-              error[1] / largest[1], error[2] / largest[2], sliding, sticking, opened);
   for (int q = 0; q < 3; ++q)
     EXPECT_BELOW_BECAUSE(error[q], 1e-12 * largest[q], "round-off of sums of some thousand increments");
   EXPECT_EQ(rolling > 200, std::string(GetParam()) == "roll");
@@ -176,7 +174,6 @@ TEST(HertzMindlin, NormalImpactIsThatOfHertz)
       EXPECT_CLOSE_BECAUSE(seen.overlap, overlap, 2.0 / (50 << (2 * k)), "the peak falls between two steps");
       EXPECT_CLOSE_BECAUSE(seen.duration, duration, 2.5 / (50 << (2 * k)), "it ends with a step that sees no overlap");
     }
-  std::printf("restitution is off by %.1e, %.1e, %.1e with 50, 200, 800 steps\n", error[0], error[1], error[2]);
   EXPECT_BELOW_BECAUSE(error[2], 0.02 * error[0], "falls with the square of the step but where it ends between two");
 }
 
@@ -234,7 +231,6 @@ TEST(HertzMindlin, TangentialLoadingIsThatOfMindlinAndDeresiewiczAtBothEnds)
   EXPECT_CLOSE_BECAUSE(bench.shear(), limit, 1e-9, "round-off");
   EXPECT_NEAR_BECAUSE(most, std::pow(1.0 / 3.0, 1.5), 2e-3,
                       "partial slip is left out: T = mu N where it is 0.81 of it");
-  std::printf("largest distance to partial slip: %.3f of the strength\n", most);
 }
 
 TEST(HertzMindlin, NoClosedCycleCreatesEnergy)
