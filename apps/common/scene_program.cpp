@@ -36,7 +36,7 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
 
 /// Headers that the scenes of one program alone have.
 constexpr std::pair<const char *, const char *> programs[] = {{"[[layer]]", "soil_column"},
-                                                              {"[soil]", "biaxial"},
+                                                              {"[soil]", "soil_column"},
                                                               {"[[stage]]", "element_test"},
                                                               {"[[curve]]", "isostat calibrate"}};
 

@@ -37,9 +37,12 @@ constexpr Key of_plate[] = {
   {.path = "rough", .kind = Kind::boolean, .value = "true",
    .text = "Whether the soil sticks to it; false: it slides freely.",
    .field = [](Plate &p) -> Field { return &p.rough; }},
-  {.path = "load_steps", .kind = Kind::integer, .value = "100", .range = counts,
-   .reason = one_or_more, .text = "Equal steps of its way.",
-   .field = [](Plate &p) -> Field { return &p.steps; }},
+};
+
+constexpr Key of_steps[] = {
+  {.path = "load_steps", .kind = Kind::integer, .value = "100", .range = counts, .reason = one_or_more,
+   .text = "Equal steps of the way of the plate, or of the top of the block.",
+   .field = [](LoadSteps &l) -> Field { return &l.number; }},
 };
 // clang-format on
 
@@ -52,10 +55,12 @@ double length_of_side(const ColumnScene &scene)
 }
 } // namespace
 
-SceneFragment<Plate> plate_keys()
+SceneFragment<Plate> plate_keys() { return {of_plate}; }
+
+SceneFragment<LoadSteps> load_step_keys()
 {
-  static const KeyTable keys{of_plate,
-                             splice("", newton_keys(), 0, [](Plate &p) -> NewtonSettings & { return p.newton; })};
+  static const KeyTable keys{of_steps,
+                             splice("", newton_keys(), 0, [](LoadSteps &l) -> NewtonSettings & { return l.newton; })};
   return {keys.keys()};
 }
 
@@ -102,6 +107,5 @@ void check_plate(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("analysis.displacement", fmt::format("must be within +-{} m, the extent of the soil along it; "
                                                          "strains are taken as small.",
                                                          number_text(room)));
-  check_newton(document, "analysis", scene.plate.newton);
 }
 } // namespace isostat

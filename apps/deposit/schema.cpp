@@ -59,8 +59,9 @@ constexpr Section sections[] = {
    .text = "Packings of grains at the Gauss points of the layers whose material is \"grains\"; the element tests' own law "
            "and rate control."},
   {.name = "analysis",
-   .text = "Waves (dynamic), the slow flow of water out of loaded soil without inertia (consolidation), or a plate that moves "
-           "slowly into a box of soil (plate).",
+   .text = "Waves (dynamic), the slow flow of water out of loaded soil without inertia (consolidation), a plate that moves "
+           "slowly into a box of soil (plate), or a block without weight in plane strain, confined on its sides and "
+           "compressed by its top (biaxial).",
    .kind_key = "kind", .kinds_title = "Analysis kinds"},
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
 };
@@ -91,7 +92,8 @@ constexpr Key ground_keys[] = {
 
   {.path = "water.drainage", .kind = Kind::choice, .value = "coupled", .choices = drainage_names,
    .text = "No water; saturated at constant volume without flow (a column only); or displacement and pore pressure coupled "
-           "(u-p).",
+           "(u-p). Of a biaxial block dry: no excess pore pressure; coupled: no water leaves it. The sides keep their total "
+           "stress then, axial_stress is total without the pressure at the start, and p and q of maps are effective.",
    .field = [](ColumnScene &s) -> Field { return &s.water.drainage; }},
   {.path = "water.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
    .value = "1000 kg/m3", .range = positive, .text = "Density of the water.",
@@ -233,7 +235,8 @@ constexpr Key result_keys[] = {
   {.path = "analysis.kind", .kind = Kind::choice, .value = "dynamic", .choices = analysis_names,
    .text = "What is solved. "
            "A consolidation needs water.drainage \"coupled\", a load of kind \"step\", a rigid base and no "
-           "motion; a plate a dry box without motion, load and `mesh.distributed`.",
+           "motion; a plate a dry box without motion, load and `mesh.distributed`; a biaxial block dimension 2, "
+           "without them, slope, base, water table, and what is written over the depth.",
    .field = [](ColumnScene &s) -> Field { return &s.analysis.kind; }},
   {.path = "analysis.duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
    .presence = Presence::required, .value = "20 s", .range = positive, .kinds = dynamic,
@@ -356,7 +359,11 @@ const SceneSchema &column_schema()
       splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),
       result_keys,
       splice("analysis", plate_keys(), kind_bit(AnalysisKind::plate),
-             [](ColumnScene &s) -> Plate & { return s.plate; })};
+             [](ColumnScene &s) -> Plate & { return s.plate; }),
+      splice("analysis", biaxial_keys(), kind_bit(AnalysisKind::biaxial),
+             [](ColumnScene &s) -> Biaxial & { return s.biaxial; }),
+      splice("analysis", load_step_keys(), kind_bit(AnalysisKind::plate) | kind_bit(AnalysisKind::biaxial),
+             [](ColumnScene &s) -> LoadSteps & { return s.load_steps; })};
   static const SceneSchema schema{.keys = keys.keys(),
                                   .sections = sections,
                                   .groups = groups,

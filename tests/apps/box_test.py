@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column with a box of soil between walls whose surface is inclined: what it leaves, on how many ranks and after
 which restarts."""
+import functools
 import json
 import re
 import shutil
@@ -165,11 +166,7 @@ class Box(ColumnTest):
         self.assertIn("the stable step of the stiffest element", result.stderr)
 
     def test_goes_on_where_it_was_stopped(self):
-        options = settings(output__checkpoint="1e-9 min")
-        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
-        self.stop_when_saved(self.scene, signal.SIGKILL, *options)
-        self.assert_done(self.run_on_ranks(2, self.scene, "-o", "parts", "--resume", *options))
-        self.assert_same_files("whole", "parts")
+        self.assert_goes_on(self.scene, signal.SIGKILL, resume=functools.partial(self.run_on_ranks, 2))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import shutil
 import sys
 
 import h5py
@@ -88,11 +89,19 @@ class ColumnTest(AppTest):
     def run_on_ranks(self, n, *arguments):
         return self.run_command(self.command_on_ranks(n, *arguments))
 
-    def stop_when_saved(self, scene, how, *options, program="soil_column"):
-        """Starts `parts`, sends it a signal once it has a checkpoint, and returns what it said on stderr."""
+    def assert_goes_on(self, scene, how, *options, resume=None):
+        """A run that gets a signal once it has a checkpoint, and is resumed, leaves the same files as one that is not
+        stopped. Returns what it said on stderr.   resume: runs the rest, as run_column() does"""
+        options = (*options, *settings(output__checkpoint="1e-9 min"))
+        self.assert_done(self.run_column(scene, "-o", "whole", "--overwrite", *options))
+        shutil.rmtree(self.folder / "parts", ignore_errors=True)
         last = self.folder / "parts/checkpoint/last.h5"
-        return self.stop_when(last.exists, last, how,
-                              self.command(program, scene, "-o", "parts", "--no-figures", *options))[1]
+        said = self.stop_when(last.exists, last, how,
+                              self.command("soil_column", scene, "-o", "parts", "--no-figures", *options))[1]
+        self.assertFalse((self.folder / "parts/summary.json").exists())
+        self.assert_done((resume or self.run_column)(scene, "-o", "parts", "--resume", *options))
+        self.assert_same_files("whole", "parts")
+        return said
 
     def assert_same_files(self, one, other):
         """All files the same: HDF5 item by item, anything else byte by byte. Checkpoints come when the clock says."""

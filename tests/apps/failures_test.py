@@ -19,7 +19,7 @@ class Failures(FailingRuns):
         self.every_call("element_test", self.write("scene.toml", SHORT_TEST), *SAVED, most=3)
 
     def test_biaxial(self):
-        self.every_call("biaxial", self.write("block.toml", FRICTION), *SAVED, most=2)
+        self.every_call("soil_column", self.write("block.toml", FRICTION), *SAVED, most=2)
 
     def test_soil_column(self):
         self.every_call("soil_column", self.write("column.toml", COLUMN), *SAVED, most=2)

@@ -102,11 +102,7 @@ class PlateTest(ColumnTest):
         self.assertGreater(force[-1], MODULUS * way[-1] / 2 * 1, "the soil beside it helps")
 
     def test_goes_on_where_it_was_stopped(self):
-        options = settings(analysis__load_steps=60, output__checkpoint="1e-9 min")
-        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
-        self.stop_when_saved(self.scene, signal.SIGKILL, *options)
-        self.assert_done(self.run_column(self.scene, "-o", "parts", "--resume", *options))
-        self.assert_same_files("whole", "parts")
+        self.assert_goes_on(self.scene, signal.SIGKILL, *settings(analysis__load_steps=60))
 
 
 if __name__ == "__main__":

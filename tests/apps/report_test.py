@@ -287,8 +287,8 @@ class OtherPrograms(ReportTest):
         self.assertIn("iquefied:", self.assert_whole("shaken"))
 
     def test_block(self):
-        self.make("biaxial", "block", SCENES / "biaxial/iwan.toml", "--set", "test.steps=4", "--set",
-                  "test.axial_strain=0.002", "--set", "output.map_every=1")
+        self.make("soil_column", "block", SCENES / "biaxial/iwan.toml", "--set", "analysis.load_steps=4", "--set",
+                  "analysis.axial_strain=0.002", "--set", "analysis.map_every=1")
         self.assertIn("Ended at its target, an axial strain of 0.2 %.", self.assert_whole("block"))
 
 

@@ -58,7 +58,7 @@ class SharedFolder(AppTest):
     def test_a_folder_that_vanishes(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
         for program, arguments in (("element_test", (scene,)), ("soil_column", (self.write("column.toml", COLUMN),)),
-                                   ("biaxial", (self.write("block.toml", FRICTION),))):
+                                   ("soil_column", (self.write("block.toml", FRICTION),))):
             with self.subTest(program), self.halted(self.command(program, *arguments, *SAVED)) as run:
                 shutil.rmtree(self.folder / "out")
                 run.send_signal(signal.SIGCONT)
@@ -70,9 +70,6 @@ class SharedFolder(AppTest):
     def test_element_test(self):
         scene = self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000)))
         self.share("element_test", scene, *SAVED)
-
-    def test_biaxial(self):
-        self.share("biaxial", self.write("block.toml", FRICTION), *SAVED)
 
     def test_soil_column(self):
         self.share("soil_column", self.write("column.toml", COLUMN), *SAVED)
