@@ -98,6 +98,7 @@ class ColumnTest(AppTest):
         last = self.folder / "parts/checkpoint/last.h5"
         said = self.stop_when(last.exists, last, how,
                               self.command("soil_column", scene, "-o", "parts", "--no-figures", *options))[1]
+        self.assertTrue(last.exists(), said)
         self.assertFalse((self.folder / "parts/summary.json").exists())
         self.assert_done((resume or self.run_column)(scene, "-o", "parts", "--resume", *options))
         self.assert_same_files("whole", "parts")
