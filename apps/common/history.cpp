@@ -64,6 +64,8 @@ std::vector<RecordColumn> history_columns(const Scene &scene)
                              "D_free_grains", "created", "residual"})
       columns.push_back({name, "J"});
   columns.insert(columns.end(), {{"eps_v", "-"}, {"r_u", "-"}, {"cycles", "-"}});
+  if (scene.drive.on)
+    columns.push_back({"relaxed", "J"});
   return columns;
 }
 
@@ -104,6 +106,8 @@ std::vector<double> history_row(const Scene &scene, const Assembly &assembly, co
     }
   row.insert(row.end(), {strain.sum(), pore_pressure_ratio(state.path, seen),
                          0.5 * (static_cast<double>(state.undrained.reversals) + state.loading.half_cycle)});
+  if (scene.drive.on)
+    row.push_back(seen.relaxed);
   return row;
 }
 } // namespace isostat

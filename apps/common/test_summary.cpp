@@ -135,6 +135,34 @@ std::optional<ShearExtremes> shear_extremes(const RunHistory &run, const Scene &
   return all;
 }
 
+/// Of a static drive, until it liquefies: increments that did not lead to a neighbouring state of balance, by the
+/// share of the stored elastic energy that their relaxation took.
+void add_jumps(const RunHistory &run, double p0, Summary &summary)
+{
+  constexpr double jump = 0.01; // elastic increments lose 1e-6 to 1e-3, docs/theory.md, section 17
+  enum
+  {
+    stress,
+    elastic,
+    relaxed,
+    flows
+  };
+  const HistoryRows rows = run.of({"p", "E_el", "relaxed", "liquefied"});
+  int n = 0;
+  double largest = 0, from = 0;
+  for (std::size_t row = 1; row < rows.n_rows() && rows(row - 1, flows) == 0; ++row)
+    {
+      const double share = rows(row, relaxed) / rows(row - 1, elastic);
+      n += share > jump;
+      if (share > largest)
+        largest = share, from = rows(row - 1, stress) / p0;
+    }
+  summary.row("jumps",
+              "{} increments lost more than {:g} % of the elastic energy, at most {:.2g} %, from p'/p0' = {:.3f}",
+              Value{"jumps.number", n}, jump / percent, Value{"jumps.largest", largest, percent},
+              Value{"jumps.p_ratio_before", from});
+}
+
 /// Reports what the rows of a history hold.
 class HistoryReport
 {
@@ -350,6 +378,8 @@ Summary summarise(const RunHistory &run, const Scene &scene, const std::map<std:
   HistoryReport history(run, scene, state, summary);
   history.add_start(effort);
   history.add_liquefaction();
+  if (scene.drive.on)
+    add_jumps(run, state.path.p0(), summary);
   history.add_reversals();
   add_response(state, scene, summary);
   history.add_extremes();

@@ -69,6 +69,7 @@ class Column:
     prefix; `peaks` the largest accelerations of all steps, m/s^2, of which the history has a part only."""
 
     def __init__(self, folder):
+        self.folder = folder
         self.columns = {name: values for name, values in read_history(folder / "history.csv").items()
                         if np.isfinite(values).any()}
         if "time" not in self.columns:

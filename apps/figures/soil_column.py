@@ -16,6 +16,7 @@ from .column_expansion import expansion
 from .column_grains import grains_history, grains_map, grains_profiles
 from .column_motion import motions, spectra, transfer
 from .column_peaks import peaks
+from .column_picture import picture
 from .column_slope import spreading
 from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks, velocity
 from .drawing import Drawing
@@ -49,6 +50,8 @@ CAPTIONS = {
     "fig_grains_profiles": "packings of grains: redundancy index I_R, coordination number, fabric over the depth",
     "fig_grains_map": "I_R over depth and time; beside it when each depth falls below I_R = 1 and exceeds r_u = 0.95",
     "fig_grains_history": "I_R, r_u and yielding contacts at the output depths",
+    "fig_picture": "acceleration of base and surface; I_R over depth and time; where it has circles, packings from the "
+                   "side with their contact forces (grains.snapshot_depths)",
 }
 
 FIGURES = {
@@ -71,6 +74,7 @@ FIGURES = {
     "fig_grains_profiles": grains_profiles,
     "fig_grains_map": grains_map,
     "fig_grains_history": grains_history,
+    "fig_picture": picture,
 }
 
 

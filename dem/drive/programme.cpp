@@ -48,9 +48,8 @@ public:
         if (!relaxation_)
           update_time_step(programme_.motion, stage_.shears(), state_.place.steps, assembly_, state_.pace);
         assembly_.compute_forces();
-        if (relaxation_)
-          relax();
-        const Observation seen = look();
+        const double relaxed = relaxation_ ? relax() : 0;
+        const Observation seen = look(relaxed);
         const Verdict verdict = stage_.judge(context_, seen);
         finished = verdict.end.has_value();
         record_if_due(seen, verdict);
@@ -93,20 +92,24 @@ private:
     assembly_.stop_grains();
   }
 
-  void relax()
+  /// @return what is lost, J
+  double relax()
   {
     const double reference = state_.path.start ? state_.path.p0() : -assembly_.stress().trace() / 3;
-    state_.pace.indicator = relaxation_->run(programme_.drive.balance, {reference}).balance.within;
+    const Relaxed found = relaxation_->run(programme_.drive.balance, {reference});
+    state_.pace.indicator = found.balance.within;
+    return found.lost;
   }
 
-  Observation look()
+  Observation look(double relaxed)
   {
     const Mat3 stress = assembly_.stress();
     if (stage_.drives() && state_.place.steps == 0)
       stage_.begin_shear(context_, stress);
     const StressInvariants now = invariants(stress);
     const Vec3 strain = -strain_since_start(assembly_, state_.path);
-    return {now.p, now.q, strain[1], assembly_.step(), stress(0, 1), state_.path.gamma, -stress.diagonal(), strain};
+    return {now.p,  now.q,  strain[1], assembly_.step(), stress(0, 1), state_.path.gamma, -stress.diagonal(),
+            strain, relaxed};
   }
 
   void record_if_due(const Observation &seen, const Verdict &verdict)
@@ -117,7 +120,7 @@ private:
     RecordedState &last = state_.recorded;
     const double load = stage_.load(seen), strain = stage_.strain(seen);
     const bool always = state_.place.steps == 0 || verdict.end || verdict.notable;
-    if (!always && last.step && seen.step - *last.step < spec.record_steps &&
+    if (!always && !relaxation_ && last.step && seen.step - *last.step < spec.record_steps &&
         std::abs(seen.p - last.p) < spec.record_stress && std::abs(load - last.load) < spec.record_stress &&
         std::abs(strain - last.strain) < stage_.row_strain(spec.record_strain) &&
         !(stage_.rows_by_any_component() && any_component_moved(seen)))

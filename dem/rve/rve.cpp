@@ -5,12 +5,11 @@
 #include "base/files/hash.hpp"
 #include "base/stopwatch.hpp"
 #include "dem/drive/rate_control.hpp"
-#include "dem/drive/servo.hpp"
 #include "dem/drive/time_step.hpp"
 #include "dem/law/parameters.hpp"
 #include "dem/measure/stress.hpp"
+#include "dem/rve/mixed_control.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -18,22 +17,12 @@ namespace isostat
 {
 namespace
 {
-constexpr std::uint64_t indicator_interval = 50, servo_interval = 20;
+constexpr std::uint64_t indicator_interval = 50;
 constexpr std::uint64_t steps_between_copies = 500; ///< a copy costs as much as one or two steps
-constexpr int settled = 3;                          ///< checks in a row with stresses on target
 constexpr double min_reference = 1e-7;              ///< of the contact modulus: p0 of a specimen without contacts
-constexpr double largest_increment = 0.1;           ///< strain that one advance() may take at all
 
 /// ln(I + H) to fourth order: what acts at a constant rate over the increment.
 Mat3 logarithm(const Mat3 &h) { return h - 0.5 * h * h + h * h * h / 3; }
-
-/// What the rate control counts as strain: the difference of the extreme principal strains, or the largest alone.
-double strain_measure(const Mat3 &gradient)
-{
-  const Mat3 strain = 0.5 * (gradient + gradient.transpose());
-  const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(strain, Eigen::EigenvaluesOnly).eigenvalues();
-  return std::max(principal[2] - principal[0], principal.cwiseAbs().maxCoeff());
-}
 
 const Snapshot &periodic(const Snapshot &specimen)
 {
@@ -41,45 +30,6 @@ const Snapshot &periodic(const Snapshot &specimen)
     throw InputError("a representative volume element needs a periodic packing, but this one is in a box. Prepare "
                      "it with specimen.domain = \"periodic-cell\".");
   return specimen;
-}
-
-/// A component as messages name it: "xy".
-std::string component(int i, int j) { return {"xyz"[i], "xyz"[j]}; }
-
-/// Why stress control cannot begin: it is not symmetric, one component has strain and stress, the target needs tension.
-/// Empty: it can.   @param slack  stress that counts as none, Pa
-std::string refusal(const MixedIncrement &increment, double slack)
-{
-  const auto &[gradient, stress, controlled, tolerance] = increment;
-  if (controlled != controlled.transpose())
-    return "stress control must be symmetric: controlled(i,j) = controlled(j,i)";
-  for (int i = 0; i < 3; ++i)
-    for (int j = i; j < 3; ++j)
-      {
-        if (!controlled(i, j))
-          continue;
-        const std::string name = component(i, j);
-        if (const double strain = 0.5 * (gradient(i, j) + gradient(j, i)); std::abs(strain) > 1e-9 * gradient.norm())
-          return fmt::format(
-              "a strain of {:.3g} is prescribed along {}, whose stress is controlled, too. Set the strain "
-              "to 0, or do not control that stress.",
-              strain, name);
-        if (std::abs(stress(i, j) - stress(j, i)) > slack)
-          return fmt::format(
-              "the target stress is not symmetric: {:.4g} Pa for {}, {:.4g} Pa for {}. Give both the same "
-              "value.",
-              stress(i, j), name, stress(j, i), component(j, i));
-        if (i == j && stress(i, i) > slack)
-          return fmt::format("the target stress of {:.4g} Pa for {} is tension, which grains without cohesion do not "
-                             "carry. Compression is negative here.",
-                             stress(i, i), name);
-        if (i != j && controlled(i, i) && controlled(j, j) && std::abs(stress(i, j)) > slack &&
-            stress(i, j) * stress(i, j) > stress(i, i) * stress(j, j))
-          return fmt::format("the target shear stress of {:.4g} Pa for {} needs tension in some direction, because the "
-                             "normal stresses are {:.4g} and {:.4g} Pa. Lower it, or compress more.",
-                             stress(i, j), name, stress(i, i), stress(j, j));
-      }
-  return {};
 }
 
 /// Of all that a state does not hold.
@@ -210,43 +160,6 @@ void Rve::run_strain(const Mat3 &own_gradient)
     }
 }
 
-void Rve::run_mixed(const MixedIncrement &own)
-{
-  const auto free = own.controlled.cast<double>().array();
-  const Mat3 symmetric = 0.5 * (own.gradient + own.gradient.transpose());
-  const Mat3 prescribed = own.gradient - Mat3(symmetric.array() * free);
-  const double size = strain_measure(prescribed);
-  double left = prescribed.isZero(0) ? 0 : 1;
-  drive_.servo.step.setZero();
-  drive_.servo.shear.setZero();
-  int on_target = 0;
-  Mat3 travelled = Mat3::Zero(); // by the servo
-  for (std::uint64_t n = 0;; ++n)
-    {
-      review();
-      const double scale = stress_scale();
-      const double error = ((assembly_.stress() - own.stress).array() * free).abs().maxCoeff();
-      if (left == 0 && n % servo_interval == 0)
-        on_target = error < own.tolerance * scale ? on_target + 1 : 0;
-      if (left == 0 && on_target >= settled)
-        return;
-      if (n >= settings_.max_steps)
-        throw RunFailure(fmt::format("stress is still {:.3g} Pa off its target after {} steps", error, n));
-      if (travelled.norm() > largest_increment)
-        throw RunFailure(fmt::format("stress is still {:.3g} Pa off its target after a strain of {:.3g}, {} steps: the "
-                                     "grains cannot carry it. Give a target nearer to the present stress.",
-                                     error, travelled.norm(), n));
-      const double part =
-          left == 0 ? 0
-                    : left / std::max(1.0, std::ceil(left * size / (drive_.pace.rate * assembly_.settings.time_step)));
-      left = part == left ? 0 : left - part;
-      const Mat3 followed =
-          stress_servo(assembly_, own.stress, own.controlled, 4 * drive_.pace.rate, drive_.steps, drive_.servo);
-      travelled += followed;
-      step(part * prescribed + followed);
-    }
-}
-
 void Rve::roll_back()
 {
   const RveState safe = safe_;
@@ -324,16 +237,15 @@ RveResponse Rve::undrained(const Mat3 &displacement_gradient) { return strain(di
 RveResponse Rve::advance(const MixedIncrement &increment)
 {
   return guarded(increment.gradient.norm(), [&] {
-    if (!(increment.stress.allFinite() && increment.tolerance > 0))
-      throw RunFailure("the target stress is not a number, or its tolerance is not positive");
-    if (const std::string why = refusal(increment, increment.tolerance * stress_scale()); !why.empty())
+    if (const std::string why = refusal(increment, stress_scale()); !why.empty())
       throw RunFailure(why);
-    if (settings_.stepping)
-      throw RunFailure("mixed control goes at a rate. Make the element without an increment (RveSettings::stepping).");
     if (settings_.frame != Mat3::Identity())
       throw RunFailure(
           "mixed control works along the axes of the specimen: it needs an element whose frame is identity");
-    run_mixed(increment);
+    if (settings_.stepping)
+      run_mixed_balanced(increment, *settings_.stepping);
+    else
+      run_mixed(increment);
     keep_safe();
   });
 }

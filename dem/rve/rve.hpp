@@ -22,11 +22,10 @@ struct RveSettings
   /// Time steps that an increment is spread over at least. An element whose increments are small would otherwise take
   /// each in a step or two, without time for its grains to find their places.
   std::uint64_t min_steps = 1;
-  std::optional<StaticStepping> stepping =
-      {};                               ///< if given, of `motion` only the time step counts, and not for mixed control
-  double max_increment = 0.01;          ///< |dH| that one advance() takes; larger ones are rejected
-  std::uint64_t max_steps = 10'000'000; ///< of one advance()
-  std::function<bool()> go_on = {};     ///< asked every 50 steps, if given; false: the increment is rejected
+  std::optional<StaticStepping> stepping = {}; ///< if given, of `motion` only the time step counts
+  double max_increment = 0.01;                 ///< |dH| that one advance() takes; larger ones are rejected
+  std::uint64_t max_steps = 10'000'000;        ///< of one advance()
+  std::function<bool()> go_on = {};            ///< asked every 50 steps, if given; false: the increment is rejected
 
   /// tested: tests/dem/rve/rve_test.cpp
   void check() const; ///< @throws InputError  motion out of range, frame is no rotation, a limit is not positive
@@ -155,6 +154,7 @@ private:
   void run_strain(const Mat3 &own_gradient);
   void run_balanced(const Mat3 &own_gradient, const StaticStepping &stepping);
   void run_mixed(const MixedIncrement &own);
+  void run_mixed_balanced(const MixedIncrement &own, const StaticStepping &stepping);
   void step(const Mat3 &own_gradient);
   void review();
   double mean_stress() const;  ///< compression positive, Pa

@@ -115,11 +115,13 @@ double Relaxation::half_work() const { return 0.5 * assembly_.settings.time_step
 
 double Relaxation::energy_of_motion() const { return assembly_.kinetic_energy() + half_work(); }
 
-void Relaxation::stop()
+double Relaxation::stop()
 {
+  const double lost = energy_of_motion();
   if (assembly_.settings.measure_energy)
-    assembly_.add_loss(energy_of_motion());
+    assembly_.add_loss(lost);
   assembly_.stop_grains();
+  return lost;
 }
 
 template <typename Move>
@@ -179,7 +181,7 @@ Relaxed Relaxation::run(const BalanceSpec &spec, const RelaxationLimits &limits)
     {
       if (!(assembly_.power() > 0))
         {
-          stop();
+          found.lost += stop();
           if (found.steps >= followed + mass_interval)
             follow_stiffness(), followed = found.steps;
         }
@@ -187,7 +189,7 @@ Relaxed Relaxation::run(const BalanceSpec &spec, const RelaxationLimits &limits)
       if ((found.steps + 1) % look_interval == 0)
         look(found, spec, limits);
     }
-  stop();
+  found.lost += stop();
   assembly_.settings.contact_damping = 0;
   return found;
 }

@@ -41,6 +41,7 @@ struct Relaxed
 {
   Balance balance;
   std::uint64_t steps = 0; ///< force evaluations
+  double lost = 0;         ///< kinetic energy of the grains where they were stopped, J
   bool balanced = false;
 };
 
@@ -91,7 +92,7 @@ private:
   std::uint64_t spread(double strain, const Vec3 &box_strain, const Move &move);
   void follow_stiffness();         ///< M and J of the contacts as they are
   void hold();                     ///< one iteration
-  void stop();                     ///< of all motion, whose energy is lost
+  double stop();                   ///< of all motion; its energy, which is lost, J
   double half_work() const;        ///< of the forces since velocities were made, J
   double energy_of_motion() const; ///< kinetic energy, of velocities that are half a step older than forces, J
   void look(Relaxed &found, const BalanceSpec &spec, const RelaxationLimits &limits) const;

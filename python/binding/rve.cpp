@@ -192,7 +192,7 @@ void bind_rve(py::module_ &module)
            "max_steps: an increment that takes more time steps is rejected.\n"
            "increment: strain [-]; increments are divided into parts of at most this, each taken to balance without "
            "inertia;\n"
-           "rate and damping do not count then, and mixed() is rejected. None: time steps at a rate.\n"
+           "rate and damping do not count then. None: time steps at a rate.\n"
            "balance: largest imbalance of a grain, force or torque/radius over the largest contact force on it [-].\n"
            "left_out: share of the loaded grains, the worst, for which balance need not hold [-].\n"
            "Ctrl-C takes an increment back. Raises InputError for settings out of range, naming it.")

@@ -230,3 +230,21 @@ def grains(folder):
     table(folder / "grain_profiles", profiles)
     table(folder / "grain_history", history)
     return folder
+
+
+def packings(folder):
+    """The same with a packing of three grains at a depth, whose chain of two contacts, one of them through a face of
+    the cell, is gone at the end."""
+    grains(folder)
+    with (folder / "scene.toml").open("a", encoding="utf-8") as scene:
+        scene.write('[grains]\nsnapshot_depths = ["5 m"]\n')
+    (folder / "grains").mkdir()
+    rows = [f'<DataSet timestep="{time}" part="0" file="d0_{k}.vtp" />\n' for k, time in enumerate((0, 20))]
+    (folder / "grains/d0.pvd").write_text("".join(rows), encoding="utf-8")
+    for k, n in enumerate((2, 0)):
+        with h5py.File(folder / f"grains/d0_{k}.h5", "w") as file:
+            file["snapshot/grains/position"] = [[1e-3 * x, 0, 0, 5e-4] for x in range(3)]
+            for name, values in {"first": [0, 2], "second": [1, 0], "normal_force": [1.0, 2.0], "overlap": [0.0, 0.0],
+                                 "normal": [[1.0, 0, 0], [1.0, 0, 0]]}.items():
+                file[f"snapshot/contacts/{name}"] = np.array(values)[:n]
+    return folder

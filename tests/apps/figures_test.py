@@ -186,6 +186,20 @@ class Figures(ToleranceTest):
         self.expect(fixture.grains(self.folder / "run"), "motions", "spectra", "transfer", "profiles", "velocity",
                     "ru_map", "histories", "loops", "grains_profiles", "grains_map", "grains_history")
 
+    def test_packings(self):
+        """A line along each half of a contact, as wide as its force; none where the network is gone."""
+        folder = fixture.packings(self.folder / "run")
+        self.expect(folder, "motions", "spectra", "transfer", "profiles", "velocity", "ru_map", "histories", "loops",
+                    "grains_profiles", "grains_map", "grains_history", "picture")
+        figure = DRAWING.figures["fig_picture"](Column(folder))
+        start, *_, end = [axes.collections[-1] for axes in figure.axes if not axes.axison]
+        self.assertEqual(end.get_segments(), [])
+        halves = sorted((round(1e3 * a[0], 9), round(1e3 * b[0], 9)) for a, b in start.get_segments())
+        self.assertEqual(halves, [(0, -0.5), (0, 0.5), (1, 0.5), (2, 2.5)])
+        narrow, wide = sorted(set(start.get_linewidths()))
+        self.assert_near(wide / narrow, 2, 1e-12, "of the forces")
+        plt.close(figure)
+
     def test_grains_without_profiles(self):
         """What is left of a run is drawn: here the history at the output depths, and no r_u in profiles.h5."""
         folder = fixture.grains(self.folder / "run")

@@ -65,7 +65,7 @@ class Studies(AppTest):
         self.write("studies/__init__.py", "")
         self.write("studies/tiny/__init__.py",
                    TINY.replace("@SCENE", tiny_scene(stages=f'[[stage]]\nkind = "hold"\nmax_steps = {steps}\n'
-                                                     "balance = 1e-14")))
+                                                     "balance = 1e-30")))
 
     def report(self, folder="out"):
         return (self.folder / folder / "tables/report.txt").read_text(encoding="utf-8")

@@ -18,6 +18,7 @@ struct Observation
   double tau = 0, gamma = 0;  ///< sigma_xy (Pa) and shear strain gamma_xy since then [-], positive together; cell only
   Vec3 stress = Vec3::Zero(); ///< sigma_x, sigma_y, sigma_z, Pa
   Vec3 strain = Vec3::Zero(); ///< logarithmic along x, y, z since then [-]
+  double relaxed = 0;         ///< kinetic energy lost on the way to balance, of a static drive, J
 };
 
 /// What came of an observation.

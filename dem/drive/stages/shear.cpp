@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace isostat
 {
@@ -19,7 +20,17 @@ constexpr std::uint64_t indicator_interval = 50;
 constexpr double consolidation_tolerance = 0.01;      ///< of p', on the stresses that a stage begins with
 constexpr double approach = 0.9, least_share = 0.002; ///< of the way to a turn, and of an increment
 constexpr double share_where_kept = 0.2; ///< of an increment: stresses that are to be kept are off after a larger one
+constexpr double largest_fall = 0.01;    ///< of p' in an increment, of p0'
 constexpr double modulus_over_affine = 0.5; ///< after a reversal grains give way: 0.55 to 0.7 was seen
+
+/// Driven strain in which p' falls by the largest fall, if it goes on as in the last increment [-].
+double strain_of_fall(DriveState &state, const Vec3 &stress)
+{
+  LastIncrement &last = state.increment;
+  const double fall = std::exchange(last.stress, stress).mean() - stress.mean();
+  const double driven = std::max(last.strain.cwiseAbs().maxCoeff(), std::abs(last.gamma));
+  return fall > 0 ? largest_fall * state.path.p0() * driven / fall : std::numeric_limits<double>::infinity();
+}
 } // namespace
 
 const ShearMode triaxial_mode{
@@ -128,9 +139,10 @@ void ShearStage::note_half_cycle(DriveState &state, double load) const
   loading.half_cycle = std::clamp(done, loading.half_cycle, 1.0);
 }
 
-double ShearStage::increment(const StageContext &c, double present) const
+double ShearStage::increment(const StageContext &c, const Observation &seen) const
 {
   Loading &loading = c.state.loading;
+  const double present = load(seen);
   update_slope(loading, present, 1);
   const KeptStresses kept = kept_stresses(c);
   const bool keeps = std::any_of(kept.begin(), kept.end(), [](const auto &stress) { return stress.has_value(); });
@@ -140,6 +152,8 @@ double ShearStage::increment(const StageContext &c, double present) const
   double step = std::min(whole, strain_left);
   if (const double end = planned_strain(); end > std::abs(loading.strain))
     step = std::min(step, (1 + 1e-9) * (end - std::abs(loading.strain))); // round-off does not keep it from the end
+  if (!keeps && keeps_volume())
+    step = std::min(step, std::max(strain_of_fall(c.state, seen.stress), least_share * whole));
   if (loading.slope > 0) // most of the way, so that a load which grows stiffer does not pass its turn by much
     step = std::min(step, std::max(approach * load_left / loading.slope, least_share * whole));
   loading.strain += direction * step;
@@ -150,7 +164,7 @@ double ShearStage::increment(const StageContext &c, double present) const
 double ShearStage::driven_step(const StageContext &c, const Observation &seen) const
 {
   if (c.drive.on)
-    return increment(c, load(seen));
+    return increment(c, seen);
   DriveState &state = c.state;
   note_inertia(c, seen);
   Loading &loading = state.loading;

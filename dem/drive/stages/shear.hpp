@@ -65,8 +65,9 @@ protected:
   void load_from_rest(const StageContext &c, double present) const;
   /// Moves on by one step of driven strain and returns it [-].
   double driven_step(const StageContext &c, const Observation &seen) const;
-  /// driven_step() of a static drive: the whole increment, or what the slope of the load leaves until it turns.
-  double increment(const StageContext &c, double present) const;
+  /// driven_step() of a static drive: the whole increment, or what the slope of the load leaves until it turns; at
+  /// constant volume, p' falls by about a hundredth of p0' at most, which resolves the onset of liquefaction.
+  double increment(const StageContext &c, const Observation &seen) const;
   /// Load at which the present direction turns, Pa; of infinite amount: it does not.
   virtual double turning_load(const DriveState &state) const
   {

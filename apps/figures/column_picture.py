@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A column of packings in one picture: motions, I_R over depth and time, packings with their force chains."""
+import re
+
+import h5py
+import numpy as np
+from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import TwoSlopeNorm
+
+from .column_grains import ISOSTATIC, label_of
+from .column_results import quantity
+from .column_soil import depth_axis, edges
+from .common import BLACK, BLUE, GREY, panel_letter, plt
+
+ROWS = 3  # of packings
+WIDTH = 0.8  # of a line that stands for the mean contact force at the start, points
+
+
+def snapshots(folder, k):
+    """Times and files of the packing at a snapshot depth."""
+    path = folder / f"grains/d{k}.pvd"
+    found = re.findall(r'timestep="([^"]+)".*?file="([^"]+)\.vtp"', path.read_text()) if path.exists() else []
+    return [(float(time), folder / f"grains/{name}.h5") for time, name in found]
+
+
+def forces(file):
+    with h5py.File(file) as results:
+        return results["snapshot/contacts/normal_force"][:]
+
+
+def draw_packing(axes, file, mean_force):
+    """Grains from the side, x to the right and z upwards; a line along each contact, as wide as its normal force."""
+    with h5py.File(file) as results:
+        grains = results["snapshot/grains/position"][:]
+        contact = {name: results[f"snapshot/contacts/{name}"][:]
+                   for name in ("first", "second", "normal", "normal_force", "overlap")}
+    place, radius = grains[:, (0, 2)], grains[:, 3]
+    axes.add_collection(EllipseCollection(2 * radius, 2 * radius, np.zeros_like(radius), units="xy", offsets=place,
+                                          transOffset=axes.transData, facecolor=GREY, edgecolor="none", alpha=0.13))
+    normal, lines = contact["normal"][:, (0, 2)], []
+    for grain, sign in ((contact["first"], 1), (contact["second"], -1)):  # two halves, also through a face of the cell
+        begin, reach = place[grain], (radius[grain] - contact["overlap"] / 2)[:, None]
+        lines += list(np.stack([begin, begin + sign * reach * normal], axis=1))
+    axes.add_collection(LineCollection(lines, colors=BLUE, capstyle="round",
+                                       linewidths=np.tile(WIDTH * contact["normal_force"] / mean_force, 2)))
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.axis("off")
+
+
+def draw_motions(column, axes):
+    axis = (column.horizontal or column.moving)[0]
+    axes.plot(column.time, column[f"input_a{axis}"], color=GREY, linewidth=0.7, label="base")
+    axes.plot(column.time, column[f"surface_a{axis}"], color=BLACK, linewidth=0.8, label="surface")
+    axes.set_ylabel(f"$a_{axis}$ (m/s$^2$)")
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
+
+
+def draw_map(column, figure, axes, depths, times):
+    """I_R, with the places and moments of the packings beside it."""
+    grains = column.grains.profiles
+    bottom = sum(layer["height"] for layer in column.layers) or float(grains["depth"].max())
+    x, y = edges(grains["time"], grains["time"][0], grains["time"][-1]), edges(grains["depth"], 0, bottom)
+    shade = axes.pcolormesh(x, y, grains["IR"].T, cmap="RdBu", rasterized=True,
+                            norm=TwoSlopeNorm(ISOSTATIC, 0, max(2.0, float(np.nanmax(grains["IR"])))))
+    figure.colorbar(shade, ax=axes, aspect=30, pad=0.02).set_label(label_of(grains))
+    axes.plot(*np.meshgrid(times, depths), "o", color=BLACK, markerfacecolor="white", markersize=5, clip_on=False,
+              linestyle="none", zorder=5)
+    axes.grid(False)
+    depth_axis(column, axes, grains["depth"])
+    axes.set_xlim(column.time[0], column.time[-1])
+    axes.set_ylabel("Depth (m)")
+    axes.set_xlabel("Time (s)")
+
+
+def picture(column):
+    """At the start, in the middle and at the end."""
+    asked = [quantity(depth) for depth in column.scene.get("grains", {}).get("snapshot_depths", [])]
+    rows = [(depth, taken) for k, depth in enumerate(asked) if len(taken := snapshots(column.folder, k)) > 1][:ROWS]
+    if not rows or "IR" not in column.grains.profiles or not column.moving:
+        return None
+    figure = plt.figure(figsize=(10.5, 5.2), layout="constrained")
+    left, right = figure.subfigures(1, 2, width_ratios=(1.25, 1))
+    top, below = left.subplots(2, 1, sharex=True, height_ratios=(1, 2.2))
+    chosen = [0, len(rows[0][1]) // 2, -1]
+    times = [rows[0][1][k][0] for k in chosen]
+    draw_motions(column, top)
+    draw_map(column, left, below, [depth for depth, _ in rows], times)
+    panels = right.subplots(len(rows), len(chosen), squeeze=False)
+    for row, (depth, taken) in zip(panels, rows):
+        mean_force = forces(taken[0][1]).mean()
+        for axes, k in zip(row, chosen):
+            draw_packing(axes, taken[k][1], mean_force)
+        row[0].annotate(f"{depth:g} m", (0, 0.5), xycoords="axes fraction", xytext=(-6, 0), rotation=90, va="center",
+                        ha="right", textcoords="offset points", fontsize=9)
+    for axes, time in zip(panels[0], times):
+        axes.set_title(f"{time:.1f} s", fontsize=9)
+    for axes, letter in ((top, "a"), (below, "b")):
+        panel_letter(axes, letter)
+    panel_letter(panels[0][0], "c")
+    right.suptitle("contact forces, as wide as they are large", fontsize=8.5, x=0.99, ha="right")
+    return figure
