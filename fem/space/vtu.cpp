@@ -52,8 +52,9 @@ Elements<dim> named(const std::vector<NodeField> &vectors, const std::vector<Poi
 template <int dim>
 std::vector<unsigned> patch_order(unsigned degree)
 {
+  const dealii::FE_Q<dim> element(degree);
   std::vector<unsigned> order;
-  for (const dealii::Point<dim> &point : dealii::FE_Q<dim>(degree).get_unit_support_points())
+  for (const dealii::Point<dim> &point : element.get_unit_support_points())
     {
       unsigned at = 0;
       for (int d = dim; d-- > 0;)
