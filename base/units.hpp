@@ -22,6 +22,23 @@ enum class Dimension
   stress_rate   ///< Pa/s, kPa/s, MPa/s       kept in Pa/s
 };
 
+/// The unit in which a quantity is shown; without a name: it has no dimension.
+struct ShownUnit
+{
+  Dimension dimension = Dimension::length;
+  const char *name = "";
+};
+
+namespace unit
+{
+inline constexpr ShownUnit m{Dimension::length, "m"}, mm{Dimension::length, "mm"}, Pa{Dimension::pressure, "Pa"},
+    kPa{Dimension::pressure, "kPa"}, MPa{Dimension::pressure, "MPa"}, GPa{Dimension::pressure, "GPa"},
+    kPa_s{Dimension::stress_rate, "kPa/s"}, deg{Dimension::angle, "deg"}, per_s{Dimension::rate, "1/s"},
+    ns{Dimension::time, "ns"}, s{Dimension::duration, "s"}, ms{Dimension::duration, "ms"},
+    min{Dimension::interval, "min"}, kg_m3{Dimension::density, "kg/m3"}, m_s{Dimension::velocity, "m/s"},
+    m_s2{Dimension::acceleration, "m/s2"}, Hz{Dimension::frequency, "Hz"};
+} // namespace unit
+
 /// A quantity read from text.
 struct Quantity
 {

@@ -45,11 +45,11 @@ void add_rate(const Scene &scene, Summary &summary)
   for (std::size_t k = 0; k < scene.stages.size(); ++k)
     if (const auto *shear = as<ShearStage>(scene.stages[k]))
       {
-        const StageRate rate = rate_in_force(scene.motion, {shear->strain_rate, shear->inertial_number()});
-        const std::string text =
-            rate.fixed ? fmt::format("{:g} 1/s", *rate.fixed) : fmt::format("I = {:g} at p0'", rate.inertial_number);
-        if (!rate.fixed)
-          largest = std::max(largest, rate.inertial_number);
+        const MotionSpec motion = shear->motion_in_force(scene.motion);
+        const std::string text = motion.strain_rate ? fmt::format("{:g} 1/s", *motion.strain_rate)
+                                                    : fmt::format("I = {:g} at p0'", *motion.inertial_number);
+        if (!motion.strain_rate)
+          largest = std::max(largest, *motion.inertial_number);
         rates.insert(text);
         lines.push_back(fmt::format("stage {}: {}", k, text));
       }

@@ -49,8 +49,8 @@ bool is_simple_shear(const Stage &stage)
 
 bool is_cyclic(const Stage &stage)
 {
-  const auto *path = as<Path>(stage);
-  return as<CyclicConstantVolume>(stage) || (path && path->turns());
+  const auto *shear = as<ShearStage>(stage);
+  return shear && shear->turns();
 }
 
 bool turns_at_a_load(const Stage &stage)
@@ -68,8 +68,7 @@ bool is_driven(const Stage &stage)
 /// It looks for liquefaction.
 bool may_liquefy(const Stage &stage)
 {
-  const auto *path = as<Path>(stage);
-  return as<ConstantVolume>(stage) || (path && path->shears() && path->keeps_volume());
+  return as<LiquefiableShear>(stage) && behaviour(stage).shears() && behaviour(stage).keeps_volume();
 }
 
 std::string index_names(const std::vector<int> &constraints)
@@ -281,7 +280,7 @@ private:
   void add_onset(std::size_t onset)
   {
     const Stage &of = stage_of(onset);
-    const double limit = as<LiquefactionLimit>(of)->liquefaction_ratio, p0 = state_.path.p0();
+    const double limit = as<LiquefiableShear>(of)->liquefaction_ratio, p0 = state_.path.p0();
     const auto n = state_.undrained.reversals_to_liquefaction();
     const std::size_t before = onset > 0 ? onset - 1 : onset;
     summary_["liquefaction"] = {{"row", onset}, {"ratio", limit}, {"cycle", static_cast<double>(n) / 2}};

@@ -18,37 +18,33 @@ constexpr const char *side_choices[] = {"tied", "walls"};
 
 // clang-format off
 constexpr Key in_mesh[] = {
-  {.path = "points", .kind = Kind::integer, .value = "0", .range = {0, 4}, .reason = "because elements are quadratic at most",
+  {.path = "points", .field = member<&ColumnMesh::points>, .value = "0", .range = {0, 4},
+   .reason = "because elements are quadratic at most",
    .text = "Gauss points of an element along each axis; 0: as many as the degree in a column, else one more. 2 with "
-           "degree 2 (reduced integration) takes fewer packings. Else at least the degree.",
-   .field = [](ColumnMesh &m) -> Field { return &m.points; }},
-  {.path = "sides", .kind = Kind::choice, .value = "tied", .choices = side_choices,
-   .text = "tied: opposite points of the sides move as one, the soil goes on for ever; walls: of a strip (dimension 2), a box "
-           "whose smooth walls move with its rigid base. The soil settles into equilibrium before "
-           "anything else, from K0 stresses: docs/theory_column.md, section 9.",
-   .field = [](ColumnMesh &m) -> Field { return &m.sides; }},
-  {.path = "ground_x", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
-   .presence = Presence::optional, .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
-   .text = "x of points of a surface that is not level, rising, on boundaries between elements; straight between them. Only "
-           "between walls; water, if there is any, covers all of it.",
-   .field = [](ColumnMesh &m) -> Field { return &m.ground_x; }},
-  {.path = "ground_z", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
-   .presence = Presence::optional, .value = "[\"4.87 m\", \"3.13 m\"]", .range = positive,
-   .text = "Heights of these points above the base, the highest being that of all layers; where the ground is lower, every "
-           "layer is thinner in proportion.",
-   .field = [](ColumnMesh &m) -> Field { return &m.ground_z; }},
+           "degree 2 (reduced integration) takes fewer packings. Else at least the degree."},
+  {.path = "sides", .field = member<&ColumnMesh::sides>, .value = "tied", .choices = side_choices,
+   .text = "tied: opposite points of the sides move as one, the soil goes on for ever; walls: of a strip (dimension "
+           "2), a box whose smooth walls move with its rigid base. The soil settles into equilibrium before anything "
+           "else, from K0 stresses: docs/theory_column.md, section 9."},
+  {.path = "ground_x", .field = member<&ColumnMesh::ground_x>, .unit = unit::m, .presence = Presence::optional,
+   .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
+   .text = "x of points of a surface that is not level, rising, on boundaries between elements; straight between them. "
+           "Only between walls; water, if there is any, covers all of it."},
+  {.path = "ground_z", .field = member<&ColumnMesh::ground_z>, .unit = unit::m, .presence = Presence::optional,
+   .value = "[\"4.87 m\", \"3.13 m\"]", .range = positive,
+   .text = "Heights of these points above the base, the highest being that of all layers; where the ground is lower, "
+           "every layer is thinner in proportion."},
 };
 
 constexpr Key in_load[] = {
-  {.path = "surcharge_from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
+  {.path = "surcharge_from", .field = member<&ColumnLoad::surcharge_from>, .unit = unit::m,
    .presence = Presence::optional, .value = "8 m", .range = not_negative,
-   .text = "x where the surcharge begins, between walls, on a boundary between elements; left out: at the left wall. In a box a surcharge on a part comes on when the soil has its K0 stress, and none has inertia.",
-   .field = [](ColumnLoad &l) -> Field { return &l.surcharge_from; }},
-  {.path = "surcharge_to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
-   .presence = Presence::optional, .value = "12 m", .range = positive,
-   .text = "x where it ends; left out: at the right wall. "
-           "Between `surcharge_from` and the width, likewise; a plate has no surcharge on a part.",
-   .field = [](ColumnLoad &l) -> Field { return &l.surcharge_to; }},
+   .text = "x where the surcharge begins, between walls, on a boundary between elements; left out: at the left wall. "
+           "In a box a surcharge on a part comes on when the soil has its K0 stress, and none has inertia."},
+  {.path = "surcharge_to", .field = member<&ColumnLoad::surcharge_to>, .unit = unit::m, .presence = Presence::optional,
+   .value = "12 m", .range = positive,
+   .text = "x where it ends; left out: at the right wall. Between `surcharge_from` and the width, likewise; a plate "
+           "has no surcharge on a part."},
 };
 // clang-format on
 

@@ -200,7 +200,7 @@ void check_output(const SceneDocument &document, const ColumnScene &scene)
 
 void check_column(const SceneDocument &document, ColumnScene &scene)
 {
-  check_groups(document, &scene);
+  check_groups(document, scene);
   check_mesh(document, scene);
   check_box(document, scene);
   check_plate(document, scene);

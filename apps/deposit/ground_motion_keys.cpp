@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/deposit/ground_motion_keys.hpp"
-
+#include "apps/deposit/scene.hpp"
 #include "base/scene/ranges.hpp"
 
 namespace isostat
@@ -20,63 +19,50 @@ constexpr unsigned ricker = kind_bit(MotionKind::ricker);
 
 // clang-format off
 constexpr Key keys[] = {
-  {.path = "axis", .kind = Kind::choice, .value = "x", .choices = motion_axes, .text = "Direction of the motion. An undrained column, whose volume is constant, follows its base along z as a "
-           "rigid body: no P waves; use coupled for them. A motion along z needs a rigid base there.",
-   .field = [](ColumnMotion &m) -> Field { return &m.axis; }},
-  {.path = "kind", .kind = Kind::choice, .presence = Presence::required, .value = "ricker",
-   .choices = motion_choices, .text = "A recorded acceleration, a sine, or a Ricker wavelet.",
-   .field = [](ColumnMotion &m) -> Field { return &m.kind; }},
-  {.path = "file", .kind = Kind::text, .presence = Presence::required, .value = "motions/record.txt",
+  {.path = "axis", .field = member<&ColumnMotion::axis>, .value = "x", .choices = motion_axes,
+   .text = "Direction of the motion. An undrained column, whose volume is constant, follows its base along z as a "
+           "rigid body: no P waves; use coupled for them. A motion along z needs a rigid base there."},
+  {.path = "kind", .field = member<&ColumnMotion::kind>, .presence = Presence::required, .value = "ricker",
+   .choices = motion_choices, .text = "A recorded acceleration, a sine, or a Ricker wavelet."},
+  {.path = "file", .field = member<&ColumnMotion::file>, .presence = Presence::required, .value = "motions/record.txt",
    .kinds = record,
-   .text = "The record: two columns of time (s) and acceleration, DEEPSOIL, PEER .AT2, K-NET ASCII or ESM ASCII; counts from "
-           "the folder of the scene file or else from the working directory. Records whose files have times keep the time "
-           "between them: the earliest first sample is at 0 s, and motions without times start at 0 s of that clock. "
-           "Samples are 1e-5 s to 10 s apart and within 1e6 m/s2.",
-   .field = [](ColumnMotion &m) -> Field { return &m.file; }},
-  {.path = "unit", .kind = Kind::choice, .value = "file", .choices = unit_choices, .kinds = record,
-   .text = "Unit of the accelerations; file: the one that the header of the record states, else g. A unit that contradicts the "
-           "header is refused.",
-   .field = [](ColumnMotion &m) -> Field { return &m.unit; }},
-  {.path = "baseline", .kind = Kind::choice, .value = "none", .choices = baseline_choices, .kinds = record,
+   .text = "The record: two columns of time (s) and acceleration, DEEPSOIL, PEER .AT2, K-NET ASCII or ESM ASCII; "
+           "counts from the folder of the scene file or else from the working directory. Records whose files have "
+           "times keep the time between them: the earliest first sample is at 0 s, and motions without times start at "
+           "0 s of that clock. Samples are 1e-5 s to 10 s apart and within 1e6 m/s2."},
+  {.path = "unit", .field = member<&ColumnMotion::unit>, .value = "file", .choices = unit_choices, .kinds = record,
+   .text = "Unit of the accelerations; file: the one that the header of the record states, else g. A unit that "
+           "contradicts the header is refused."},
+  {.path = "baseline", .field = member<&ColumnMotion::baseline>, .value = "none", .choices = baseline_choices,
+   .kinds = record,
    .text = "What is taken off the accelerations: nothing, their mean, or the quadratic in time that minimises the "
-           "drift of the displacement.",
-   .field = [](ColumnMotion &m) -> Field { return &m.baseline; }},
-  {.path = "factor", .value = "1", .kinds = record, .group = "scale",
-   .text = "Accelerations of the record are multiplied by this; excludes `peak`.",
-   .field = [](ColumnMotion &m) -> Field { return &m.factor; }},
-  {.path = "peak", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
-   .presence = Presence::optional, .value = "0.2 g", .range = positive, .kinds = record, .group = "scale",
-   .text = "Largest acceleration to which the record is scaled; excludes `factor`.",
-   .field = [](ColumnMotion &m) -> Field { return &m.peak; }},
-  {.path = "amplitude", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
-   .presence = Presence::required, .value = "0.1 g", .kinds = harmonic | ricker, .text = "Amplitude of the acceleration.",
-   .field = [](ColumnMotion &m) -> Field { return &m.amplitude; }},
-  {.path = "frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
-   .presence = Presence::required, .value = "2 Hz", .range = {1e-3, 1e3}, .reason = "because ground does not shake as slowly or as fast",
-   .kinds = harmonic | ricker,
-   .text = "Frequency of the sine; of a wavelet the one where its spectrum is largest.",
-   .field = [](ColumnMotion &m) -> Field { return &m.frequency; }},
-  {.path = "duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::required, .value = "10 s", .range = {0, 1e5, true}, .reason = "because no motion lasts for more than a day", .kinds = harmonic,
-   .text = "Duration of the sine.",
-   .field = [](ColumnMotion &m) -> Field { return &m.duration; }},
-  {.path = "ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
-   .range = not_negative, .kinds = harmonic, .text = "Time in which the sine rises smoothly, and falls again at its end. "
-                                                     "At most half of `duration`.",
-   .field = [](ColumnMotion &m) -> Field { return &m.ramp; }},
-  {.path = "centre", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::optional, .value = "0.75 s", .range = positive, .kinds = ricker,
-   .text = "Time of the wavelet's peak, half of its duration; left out: 1.5 / frequency.",
-   .field = [](ColumnMotion &m) -> Field { return &m.centre; }},
-  {.path = "interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::optional, .value = "1 ms", .range = {Motion::shortest_interval, Motion::longest_interval},
+           "drift of the displacement."},
+  {.path = "factor", .field = member<&ColumnMotion::factor>, .value = "1", .kinds = record, .group = "scale",
+   .text = "Accelerations of the record are multiplied by this; excludes `peak`."},
+  {.path = "peak", .field = member<&ColumnMotion::peak>, .unit = unit::m_s2, .presence = Presence::optional,
+   .value = "0.2 g", .range = positive, .kinds = record, .group = "scale",
+   .text = "Largest acceleration to which the record is scaled; excludes `factor`."},
+  {.path = "amplitude", .field = member<&ColumnMotion::amplitude>, .unit = unit::m_s2, .presence = Presence::required,
+   .value = "0.1 g", .kinds = harmonic | ricker, .text = "Amplitude of the acceleration."},
+  {.path = "frequency", .field = member<&ColumnMotion::frequency>, .unit = unit::Hz, .presence = Presence::required,
+   .value = "2 Hz", .range = {1e-3, 1e3}, .reason = "because ground does not shake as slowly or as fast",
+   .kinds = harmonic | ricker, .text = "Frequency of the sine; of a wavelet the one where its spectrum is largest."},
+  {.path = "duration", .field = member<&ColumnMotion::duration>, .unit = unit::s, .presence = Presence::required,
+   .value = "10 s", .range = {0, 1e5, true}, .reason = "because no motion lasts for more than a day", .kinds = harmonic,
+   .text = "Duration of the sine."},
+  {.path = "ramp", .field = member<&ColumnMotion::ramp>, .unit = unit::s, .value = "0 s", .range = not_negative,
+   .kinds = harmonic,
+   .text = "Time in which the sine rises smoothly, and falls again at its end. At most half of `duration`."},
+  {.path = "centre", .field = member<&ColumnMotion::centre>, .unit = unit::s, .presence = Presence::optional,
+   .value = "0.75 s", .range = positive, .kinds = ricker,
+   .text = "Time of the wavelet's peak, half of its duration; left out: 1.5 / frequency."},
+  {.path = "interval", .field = member<&ColumnMotion::interval>, .unit = unit::s, .presence = Presence::optional,
+   .value = "1 ms", .range = {Motion::shortest_interval, Motion::longest_interval},
    .reason = "because ground does not shake as fast or as slowly", .kinds = harmonic | ricker,
-   .text = "Time between samples, straight in between; left out: 1 / (500 frequency), and 1e-5 s at least.",
-   .field = [](ColumnMotion &m) -> Field { return &m.interval; }},
-  {.path = "again", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::optional, .value = "20 s", .range = positive,
-   .text = "Time from the start of the motion to its start for the second time; left out: it comes once.",
-   .field = [](ColumnMotion &m) -> Field { return &m.again; }},
+   .text = "Time between samples, straight in between; left out: 1 / (500 frequency), and 1e-5 s at least."},
+  {.path = "again", .field = member<&ColumnMotion::again>, .unit = unit::s, .presence = Presence::optional,
+   .value = "20 s", .range = positive,
+   .text = "Time from the start of the motion to its start for the second time; left out: it comes once."},
 };
 // clang-format on
 } // namespace

@@ -20,29 +20,23 @@ constexpr const char *sides[] = {"surface", "base", "left", "right"};
 
 // clang-format off
 constexpr Key of_plate[] = {
-  {.path = "on", .kind = Kind::choice, .value = "surface", .choices = sides,
-   .text = "A footing on the surface, a trapdoor in the base, a left or right wall.",
-   .field = [](Plate &p) -> Field { return &p.on; }},
-  {.path = "from", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .presence = Presence::optional,
-   .value = "0 m", .range = not_negative,
-   .text = "x where it begins, on a wall z, on a boundary between elements; left out: at the end of its side.",
-   .field = [](Plate &p) -> Field { return &p.from; }},
-  {.path = "to", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .presence = Presence::optional,
-   .value = "2 m", .range = positive, .text = "Where it ends, likewise.",
-   .field = [](Plate &p) -> Field { return &p.to; }},
-  {.path = "displacement", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0.1 m",
-   .text = "How far it moves into the soil; negative: away from it. "
-           "Not 0 m, and less than the extent of the soil along it.",
-   .field = [](Plate &p) -> Field { return &p.displacement; }},
-  {.path = "rough", .kind = Kind::boolean, .value = "true",
-   .text = "Whether the soil sticks to it; false: it slides freely.",
-   .field = [](Plate &p) -> Field { return &p.rough; }},
+  {.path = "on", .field = member<&Plate::on>, .value = "surface", .choices = sides,
+   .text = "A footing on the surface, a trapdoor in the base, a left or right wall."},
+  {.path = "from", .field = member<&Plate::from>, .unit = unit::m, .presence = Presence::optional, .value = "0 m",
+   .range = not_negative,
+   .text = "x where it begins, on a wall z, on a boundary between elements; left out: at the end of its side."},
+  {.path = "to", .field = member<&Plate::to>, .unit = unit::m, .presence = Presence::optional, .value = "2 m",
+   .range = positive, .text = "Where it ends, likewise."},
+  {.path = "displacement", .field = member<&Plate::displacement>, .unit = unit::m, .value = "0.1 m",
+   .text = "How far it moves into the soil; negative: away from it. Not 0 m, and less than the extent of the soil "
+           "along it."},
+  {.path = "rough", .field = member<&Plate::rough>, .value = "true",
+   .text = "Whether the soil sticks to it; false: it slides freely."},
 };
 
 constexpr Key of_steps[] = {
-  {.path = "load_steps", .kind = Kind::integer, .value = "100", .range = counts, .reason = one_or_more,
-   .text = "Equal steps of the way of the plate, or of the top of the block.",
-   .field = [](LoadSteps &l) -> Field { return &l.number; }},
+  {.path = "load_steps", .field = member<&LoadSteps::number>, .value = "100", .range = counts, .reason = one_or_more,
+   .text = "Equal steps of the way of the plate, or of the top of the block."},
 };
 // clang-format on
 
@@ -59,8 +53,7 @@ SceneFragment<Plate> plate_keys() { return {of_plate}; }
 
 SceneFragment<LoadSteps> load_step_keys()
 {
-  static const KeyTable keys{of_steps,
-                             splice("", newton_keys(), 0, [](LoadSteps &l) -> NewtonSettings & { return l.newton; })};
+  static const KeyTable keys{of_steps, splice<&LoadSteps::newton>("", newton_keys())};
   return {keys.keys()};
 }
 

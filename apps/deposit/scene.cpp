@@ -18,7 +18,7 @@ namespace
 ColumnScene checked_scene(const SceneDocument &document)
 {
   ColumnScene scene;
-  fill_scene(document, &scene);
+  fill_scene(document, scene);
   check_column(document, scene);
   return scene;
 }
@@ -213,7 +213,7 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
   return scene;
 }
 
-std::string to_toml(const ColumnScene &scene) { return write_scene(column_schema(), &scene); }
+std::string to_toml(const ColumnScene &scene) { return write_scene(column_schema(), scene); }
 
 std::string default_column_scene() { return write_defaults(column_schema()); }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "apps/deposit/biaxial.hpp"
 #include "apps/deposit/plate.hpp"
+#include "base/scene/fragment.hpp"
 #include "coupling/batch/rve_material_settings.hpp"
 #include "coupling/in_situ/specimen_request.hpp"
 #include "fem/material/iwan.hpp"
@@ -22,7 +23,6 @@
 namespace isostat
 {
 class SceneDocument;
-struct SceneSchema;
 
 struct ColumnMesh
 {
@@ -260,6 +260,7 @@ std::string to_toml(const ColumnScene &scene);
 /// The keys of a soil column: fields are those of a ColumnScene, of a ColumnLayer below [[layer]] and of a ColumnMotion
 /// below [[motion]].
 const SceneSchema &column_schema();
+SceneFragment<ColumnMotion> ground_motion_keys(); ///< those of [[motion]]
 /// Rules that bind several keys.   @throws InputError   tested: tests/apps/deposit/scene_error_test.cpp
 void check_column(const SceneDocument &document, ColumnScene &scene);
 

@@ -4,7 +4,6 @@
 // fem/material/mohr_coulomb_scene.cpp, those of air and viscosity in fem/water/pore_fluid_scene.cpp, those of packings
 // in coupling/scene/packings.cpp.
 #include "apps/deposit/box.hpp"
-#include "apps/deposit/ground_motion_keys.hpp"
 #include "apps/deposit/slope.hpp"
 
 #include "base/scene/ranges.hpp"
@@ -30,6 +29,7 @@ constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 constexpr unsigned compliant = kind_bit(BaseKind::compliant);
 constexpr unsigned loaded = kind_bit(LoadKind::step) | kind_bit(LoadKind::harmonic);
 constexpr unsigned dynamic = kind_bit(AnalysisKind::dynamic);
+constexpr unsigned slow = kind_bit(AnalysisKind::plate) | kind_bit(AnalysisKind::biaxial);
 constexpr unsigned consolidation = kind_bit(AnalysisKind::consolidation);
 
 // clang-format off
@@ -66,249 +66,215 @@ constexpr Section sections[] = {
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
 };
 
-constexpr Key ground_keys[] = {
-  {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
-   .field = [](ColumnScene &s) -> Field { return &s.title; }},
+constexpr Key title_key[] = {
+  {.path = "title", .field = member<&ColumnScene::title>, .text = "What the scene shows; heads tables and figures."},
+};
 
-  {.path = "mesh.dimension", .kind = Kind::integer, .value = "1", .range = {1, 3},
+constexpr Key mesh_keys[] = {
+  {.path = "dimension", .field = member<&ColumnMesh::dimension>, .value = "1", .range = {1, 3},
    .reason = "because space has as many",
-   .text = "1: a column, one Gauss-point stress per depth; 2: a plane strip (x, z); 3: a block.",
-   .field = [](ColumnScene &s) -> Field { return &s.mesh.dimension; }},
-  {.path = "mesh.degree", .kind = Kind::integer, .value = "2", .range = {1, 2},
+   .text = "1: a column, one Gauss-point stress per depth; 2: a plane strip (x, z); 3: a block."},
+  {.path = "degree", .field = member<&ColumnMesh::degree>, .value = "2", .range = {1, 2},
    .reason = "because elements are linear or quadratic",
-   .text = "Degree of the displacement in an element; the pore pressure has degree 1. 2 where drainage is \"coupled\".",
-   .field = [](ColumnScene &s) -> Field { return &s.mesh.degree; }},
-  {.path = "mesh.width", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "1 m",
-   .range = positive, .text = "Extent of a strip or block along x, of a block along y too.",
-   .field = [](ColumnScene &s) -> Field { return &s.mesh.width; }},
-  {.path = "mesh.cells_across", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
-   .text = "Elements over the width.",
-   .field = [](ColumnScene &s) -> Field { return &s.mesh.cells_across; }},
-  {.path = "mesh.distributed", .kind = Kind::boolean, .value = "false",
-   .text = "One mesh shared out over all MPI ranks, without profiles and files for ParaView; false: a copy on every rank, "
-           "whose results are the same bits for any number of ranks. "
-           "Of dimension 2 or 3, without a plate and materials of the user.",
-   .field = [](ColumnScene &s) -> Field { return &s.mesh.distributed; }},
+   .text = "Degree of the displacement in an element; the pore pressure has degree 1. 2 where drainage is \"coupled\"."},
+  {.path = "width", .field = member<&ColumnMesh::width>, .unit = unit::m, .value = "1 m", .range = positive,
+   .text = "Extent of a strip or block along x, of a block along y too."},
+  {.path = "cells_across", .field = member<&ColumnMesh::cells_across>, .value = "1", .range = counts,
+   .reason = one_or_more, .text = "Elements over the width."},
+  {.path = "distributed", .field = member<&ColumnMesh::distributed>, .value = "false",
+   .text = "One mesh shared out over all MPI ranks, without profiles and files for ParaView; false: a copy on every "
+           "rank, whose results are the same bits for any number of ranks. Of dimension 2 or 3, without a plate and "
+           "materials of the user."},
+};
 
-  {.path = "water.drainage", .kind = Kind::choice, .value = "coupled", .choices = drainage_names,
-   .text = "No water; saturated at constant volume without flow (a column only); or displacement and pore pressure coupled "
-           "(u-p). Of a biaxial block dry: no excess pore pressure; coupled: no water leaves it. The sides keep their total "
-           "stress then, axial_stress is total without the pressure at the start, and p and q of maps are effective.",
-   .field = [](ColumnScene &s) -> Field { return &s.water.drainage; }},
-  {.path = "water.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
-   .value = "1000 kg/m3", .range = positive, .text = "Density of the water.",
-   .field = [](ColumnScene &s) -> Field { return &s.water.density; }},
-  {.path = "water.bulk_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "GPa",
-   .value = "2.2 GPa", .range = positive, .text = "Bulk modulus K_w of the water; air in it (`layer.saturation`) makes it softer.",
-   .field = [](ColumnScene &s) -> Field { return &s.water.bulk_modulus; }},
-  {.path = "water.gravity", .kind = Kind::quantity, .dimension = Dimension::acceleration, .unit = "m/s2",
-   .value = "9.81 m/s2", .range = positive, .text = "Acceleration of gravity, of the soil's weight too.",
-   .field = [](ColumnScene &s) -> Field { return &s.water.gravity; }},
-  {.path = "water.table", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
-   .range = not_negative,
-   .text = "Depth of the water table, on a boundary between elements; only where drainage is \"coupled\". Soil above it has "
-           "neither pore pressure nor buoyancy; its weight is the density of its layer, which counts its moisture. "
-           "Less than the height of the soil; 0 m in a box and on a submerged slope.",
-   .field = [](ColumnScene &s) -> Field { return &s.water.table; }},
-  {.path = "water.lagged_compressibility", .kind = Kind::boolean, .value = "false",
-   .text = "Undrained only: the volume gives way by -dp/Q of the step before, as in water of finite stiffness. The fluid must be "
-           "stiffer than the skeleton, K_f/n > M.",
-   .field = [](ColumnScene &s) -> Field { return &s.water.lagged_compressibility; }},
+constexpr Key water_keys[] = {
+  {.path = "drainage", .field = member<&ColumnWater::drainage>, .value = "coupled", .choices = drainage_names,
+   .text = "No water; saturated at constant volume without flow (a column only); or displacement and pore pressure "
+           "coupled (u-p). Of a biaxial block dry: no excess pore pressure; coupled: no water leaves it. The sides keep "
+           "their total stress then, axial_stress is total without the pressure at the start, and p and q of maps are "
+           "effective."},
+  {.path = "density", .field = member_of<ColumnWater, &ColumnWater::density>, .unit = unit::kg_m3,
+   .value = "1000 kg/m3", .range = positive, .text = "Density of the water."},
+  {.path = "bulk_modulus", .field = member_of<ColumnWater, &ColumnWater::bulk_modulus>, .unit = unit::GPa,
+   .value = "2.2 GPa", .range = positive,
+   .text = "Bulk modulus K_w of the water; air in it (`layer.saturation`) makes it softer."},
+  {.path = "gravity", .field = member_of<ColumnWater, &ColumnWater::gravity>, .unit = unit::m_s2, .value = "9.81 m/s2",
+   .range = positive, .text = "Acceleration of gravity, of the soil's weight too."},
+  {.path = "table", .field = member<&ColumnWater::table>, .unit = unit::m, .value = "0 m", .range = not_negative,
+   .text = "Depth of the water table, on a boundary between elements; only where drainage is \"coupled\". Soil above "
+           "it has neither pore pressure nor buoyancy; its weight is the density of its layer, which counts its "
+           "moisture. Less than the height of the soil; 0 m in a box and on a submerged slope."},
+  {.path = "lagged_compressibility", .field = member<&ColumnWater::lagged_compressibility>, .value = "false",
+   .text = "Undrained only: the volume gives way by -dp/Q of the step before, as in water of finite stiffness. The "
+           "fluid must be stiffer than the skeleton, K_f/n > M."},
+};
 
-  {.path = "layer.name", .kind = Kind::text, .text = "Name of the layer, for tables and figures.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.name; }},
-  {.path = "layer.thickness", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
+constexpr Key layer_keys[] = {
+  {.path = "name", .field = member_of<ColumnLayer, &ColumnLayer::name>,
+   .text = "Name of the layer, for tables and figures."},
+  {.path = "thickness", .field = member_of<ColumnLayer, &ColumnLayer::thickness>, .unit = unit::m,
    .presence = Presence::required, .value = "5 m", .range = {1e-3, 1e5},
    .reason = "because a layer without height has no cells, and the crust of the Earth is not as thick",
-   .text = "Thickness of the layer.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.thickness; }},
-  {.path = "layer.table", .kind = Kind::text, .presence = Presence::optional, .value = "profile.csv", .kinds = formula,
-   .text = "A CSV file in place of thickness, shear_velocity and density: its rows, from the surface down, become layers "
-           "that share all other keys of this one. Its first line names the columns `thickness (m)`, `shear_velocity "
-           "(m/s)` and `density (kg/m3)`, among others if need be; found as `motion.file` is.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.table; }},
-  {.path = "layer.cells", .kind = Kind::integer, .presence = Presence::experiment, .value = "10", .range = counts,
-   .reason = one_or_more, .group = "cells", .text = "Elements through the thickness.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.cells; }},
-  {.path = "layer.cell_size", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
+   .text = "Thickness of the layer."},
+  {.path = "table", .field = member<&ColumnLayer::table>, .presence = Presence::optional, .value = "profile.csv",
+   .kinds = formula,
+   .text = "A CSV file in place of thickness, shear_velocity and density: its rows, from the surface down, become "
+           "layers that share all other keys of this one. Its first line names the columns `thickness (m)`, "
+           "`shear_velocity (m/s)` and `density (kg/m3)`, among others if need be; found as `motion.file` is."},
+  {.path = "cells", .field = member_of<ColumnLayer, &ColumnLayer::cells>, .presence = Presence::experiment,
+   .value = "10", .range = counts, .reason = one_or_more, .group = "cells", .text = "Elements through the thickness."},
+  {.path = "cell_size", .field = member_of<ColumnLayer, &ColumnLayer::cell_size>, .unit = unit::m,
    .presence = Presence::optional, .value = "0.5 m", .range = positive, .group = "cells",
-   .text = "Largest height of an element; the layer gets as few as keep it. At most 1000000 elements.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.cell_size; }},
-  {.path = "layer.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
+   .text = "Largest height of an element; the layer gets as few as keep it. At most 1000000 elements."},
+  {.path = "density", .field = member_of<ColumnLayer, &ColumnLayer::density>, .unit = unit::kg_m3,
    .value = "2000 kg/m3", .range = positive,
-   .text = "Density of soil and water together; above a water table with what moisture is there, of dry soil if there is no water. "
-           "Above that of the water where there is any.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.density; }},
-  {.path = "layer.porosity", .value = "0.4", .range = fraction, .reason = "because soil has both grains and pores",
-   .text = "Volume of pores over the whole.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.porosity; }},
-  {.path = "layer.permeability", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
-   .presence = Presence::experiment, .value = "1e-5 m/s", .range = not_negative, .reason = "because water flows down the gradient",
-   .text = "Hydraulic conductivity k; 0 m/s: no water moves. Must be given if the drainage is coupled.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.permeability; }},
-  {.path = "layer.k0", .value = "0.5", .range = {0, 5, true},
+   .text = "Density of soil and water together; above a water table with what moisture is there, of dry soil if there "
+           "is no water. Above that of the water where there is any."},
+  {.path = "porosity", .field = member_of<ColumnLayer, &ColumnLayer::porosity>, .value = "0.4", .range = fraction,
+   .reason = "because soil has both grains and pores", .text = "Volume of pores over the whole."},
+  {.path = "permeability", .field = member_of<ColumnLayer, &ColumnLayer::permeability>, .unit = unit::m_s,
+   .presence = Presence::experiment, .value = "1e-5 m/s", .range = not_negative,
+   .reason = "because water flows down the gradient",
+   .text = "Hydraulic conductivity k; 0 m/s: no water moves. Must be given if the drainage is coupled."},
+  {.path = "k0", .field = member_of<ColumnLayer, &ColumnLayer::k0>, .value = "0.5", .range = {0, 5, true},
    .reason = "because horizontal stress is compression too, and at 5 soil of 42 deg fails",
-   .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.k0; }},
-  {.path = "layer.material", .kind = Kind::choice, .presence = Presence::required, .value = "elastic",
+   .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it."},
+  {.path = "material", .field = member<&ColumnLayer::material>, .presence = Presence::required, .value = "elastic",
    .choices = material_names,
-   .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength follow "
-           "the mean effective stress, strength of friction and cohesion (Mohr-Coulomb), a packing of grains at every Gauss point, see [grains], or one of the user's own, which "
-           "isostat.column.run() in Python takes by the name of the layer (docs/python.md), not with mesh.distributed.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.material; }},
-  {.path = "layer.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
-   .presence = Presence::experiment, .value = "200 m/s", .range = {0.1, 1e5}, .reason = "because waves in mud are as slow, and in rock not as fast",
-   .kinds = formula, .group = "stiffness",
-   .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan and mohr_coulomb, at the reference pressure.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_velocity; }},
-  {.path = "layer.shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "MPa",
-   .presence = Presence::optional, .value = "80 MPa", .range = stresses, .reason = because_stresses, .kinds = formula, .group = "stiffness",
-   .text = "Shear modulus G of small strain. Of iwan and mohr_coulomb, at the reference pressure.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.shear_modulus; }},
-  {.path = "layer.poisson_ratio", .value = "0.3", .range = {0, 0.5, false, true},
+   .text = "Law of the soil skeleton: linear elastic, parallel slip elements (Iwan) whose stiffness and strength "
+           "follow the mean effective stress, strength of friction and cohesion (Mohr-Coulomb), a packing of grains at "
+           "every Gauss point, see [grains], or one of the user's own, which isostat.column.run() in Python takes by "
+           "the name of the layer (docs/python.md), not with mesh.distributed."},
+  {.path = "shear_velocity", .field = member<&ColumnLayer::shear_velocity>, .unit = unit::m_s,
+   .presence = Presence::experiment, .value = "200 m/s", .range = {0.1, 1e5},
+   .reason = "because waves in mud are as slow, and in rock not as fast", .kinds = formula, .group = "stiffness",
+   .text = "Velocity V_s of shear waves of small strain: G = density V_s^2. Of iwan and mohr_coulomb, at the reference "
+           "pressure."},
+  {.path = "shear_modulus", .field = member<&ColumnLayer::shear_modulus>, .unit = unit::MPa,
+   .presence = Presence::optional, .value = "80 MPa", .range = stresses, .reason = because_stresses, .kinds = formula,
+   .group = "stiffness",
+   .text = "Shear modulus G of small strain. Of iwan and mohr_coulomb, at the reference pressure."},
+  {.path = "poisson_ratio", .field = member<&ColumnLayer::poisson_ratio>, .value = "0.3",
+   .range = {0, 0.5, false, true},
    .reason = "because the skeleton does not widen when it is stretched, and is compressible without its water",
-   .kinds = formula, .text = "Poisson's ratio of the drained skeleton.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.poisson_ratio; }},
+   .kinds = formula, .text = "Poisson's ratio of the drained skeleton."},
 };
 
-constexpr Key own_sand_keys[] = {
-  {.path = "layer.library", .kind = Kind::text, .presence = Presence::optional, .value = "gravel.h5", .kinds = grains,
-   .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one is.",
-   .field = [](ColumnScene &, ColumnLayer &l) -> Field { return &l.grains.library; }},
+constexpr Key own_sand_key[] = {
+  {.path = "library", .field = member<&ColumnLayer::grains, &SpecimenRequest::library>, .presence = Presence::optional,
+   .value = "gravel.h5", .kinds = grains,
+   .text = "Specimens of this layer's sand, where it is another one than that of `grains.library`; found as that one "
+           "is."},
 };
 
-constexpr Key loading_keys[] = {
-  {.path = "base.kind", .kind = Kind::choice, .value = "rigid", .choices = base_choices,
-   .text = "rigid: it has the given motion; compliant: elastic rock that takes waves away (Lysmer dashpot), the motion is "
-           "that of its outcrop.",
-   .field = [](ColumnScene &s) -> Field { return &s.base.kind; }},
-  {.path = "base.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
-   .presence = Presence::required, .value = "2300 kg/m3", .range = positive, .kinds = compliant,
-   .text = "Density of the rock.",
-   .field = [](ColumnScene &s) -> Field { return &s.base.density; }},
-  {.path = "base.shear_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
-   .presence = Presence::required, .value = "800 m/s", .range = positive, .kinds = compliant,
-   .text = "Velocity of shear waves in the rock.",
-   .field = [](ColumnScene &s) -> Field { return &s.base.shear_velocity; }},
-  {.path = "base.p_velocity", .kind = Kind::quantity, .dimension = Dimension::velocity, .unit = "m/s",
-   .presence = Presence::optional, .value = "1600 m/s", .range = positive, .kinds = compliant,
-   .text = "Velocity of P waves in the rock; left out: twice the shear velocity. "
-           "More than 1.155 times the shear velocity.",
-   .field = [](ColumnScene &s) -> Field { return &s.base.p_velocity; }},
-
-  {.path = "load.kind", .kind = Kind::choice, .value = "none", .choices = load_choices,
-   .text = "How the traction runs in time.",
-   .field = [](ColumnScene &s) -> Field { return &s.load.kind; }},
-  {.path = "load.surcharge", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa", .value = "0 kPa",
-   .range = not_negative, .text = "Vertical load on the unit of the surface, there from the start and part of the in-situ effective stress; on a "
-           "slope its part along x is carried by shear.",
-   .field = [](ColumnScene &s) -> Field { return &s.load.surcharge; }},
-  {.path = "load.direction", .kind = Kind::choice, .value = "z", .choices = load_axes, .kinds = loaded,
-   .text = "Direction of the traction; along z compression is positive.",
-   .field = [](ColumnScene &s) -> Field { return &s.load.direction; }},
-  {.path = "load.amplitude", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
-   .presence = Presence::required, .value = "10 kPa", .kinds = loaded, .text = "The traction, or the amplitude of its sine.",
-   .field = [](ColumnScene &s) -> Field { return &s.load.amplitude; }},
-  {.path = "load.frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
-   .presence = Presence::required, .value = "1 Hz", .range = positive, .kinds = kind_bit(LoadKind::harmonic),
-   .text = "Frequency of the sine.",
-   .field = [](ColumnScene &s) -> Field { return &s.load.frequency; }},
-  {.path = "load.ramp", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s", .value = "0 s",
-   .range = not_negative, .kinds = loaded, .text = "Time in which the traction rises smoothly from nothing.",
-   .field = [](ColumnScene &s) -> Field { return &s.load.ramp; }},
+constexpr Key base_keys[] = {
+  {.path = "kind", .field = member<&Base::kind>, .value = "rigid", .choices = base_choices,
+   .text = "rigid: it has the given motion; compliant: elastic rock that takes waves away (Lysmer dashpot), the motion "
+           "is that of its outcrop."},
+  {.path = "density", .field = member<&Base::density>, .unit = unit::kg_m3, .presence = Presence::required,
+   .value = "2300 kg/m3", .range = positive, .kinds = compliant, .text = "Density of the rock."},
+  {.path = "shear_velocity", .field = member<&Base::shear_velocity>, .unit = unit::m_s, .presence = Presence::required,
+   .value = "800 m/s", .range = positive, .kinds = compliant, .text = "Velocity of shear waves in the rock."},
+  {.path = "p_velocity", .field = member<&Base::p_velocity>, .unit = unit::m_s, .presence = Presence::optional,
+   .value = "1600 m/s", .range = positive, .kinds = compliant,
+   .text = "Velocity of P waves in the rock; left out: twice the shear velocity. More than 1.155 times the shear "
+           "velocity."},
 };
 
-constexpr Key result_keys[] = {
-  {.path = "grains.snapshot_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
+constexpr Key load_keys[] = {
+  {.path = "kind", .field = member<&ColumnLoad::kind>, .value = "none", .choices = load_choices,
+   .text = "How the traction runs in time."},
+  {.path = "surcharge", .field = member<&ColumnLoad::surcharge>, .unit = unit::kPa, .value = "0 kPa",
+   .range = not_negative,
+   .text = "Vertical load on the unit of the surface, there from the start and part of the in-situ effective stress; "
+           "on a slope its part along x is carried by shear."},
+  {.path = "direction", .field = member<&ColumnLoad::direction>, .value = "z", .choices = load_axes, .kinds = loaded,
+   .text = "Direction of the traction; along z compression is positive."},
+  {.path = "amplitude", .field = member<&ColumnLoad::amplitude>, .unit = unit::kPa, .presence = Presence::required,
+   .value = "10 kPa", .kinds = loaded, .text = "The traction, or the amplitude of its sine."},
+  {.path = "frequency", .field = member<&ColumnLoad::frequency>, .unit = unit::Hz, .presence = Presence::required,
+   .value = "1 Hz", .range = positive, .kinds = kind_bit(LoadKind::harmonic), .text = "Frequency of the sine."},
+  {.path = "ramp", .field = member<&ColumnLoad::ramp>, .unit = unit::s, .value = "0 s", .range = not_negative,
+   .kinds = loaded, .text = "Time in which the traction rises smoothly from nothing."},
+};
+
+constexpr Key grain_output_keys[] = {
+  {.path = "snapshot_depths", .field = member<&GrainOutput::snapshot_depths>, .unit = unit::m,
    .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
-   .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`. Within the soil.",
-   .field = [](ColumnScene &s) -> Field { return &s.grain_output.snapshot_depths; }},
-  {.path = "grains.path_depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
-   .presence = Presence::optional, .value = "[\"5 m\"]", .range = not_negative,
-   .text = "Depths at which the strain of every step and the stress after it are stored, for the program `rve_replay`, which "
-           "sends the packing the same way again, alone. Within the soil.",
-   .field = [](ColumnScene &s) -> Field { return &s.grain_output.path_depths; }},
-  {.path = "grains.snapshot_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .value = "1 s", .range = positive, .text = "Time between them.",
-   .field = [](ColumnScene &s) -> Field { return &s.grain_output.snapshot_interval; }},
+   .text = "Depths at which whole packings are stored, for ParaView and the program `micromechanics`. Within the soil."},
+  {.path = "path_depths", .field = member<&GrainOutput::path_depths>, .unit = unit::m, .presence = Presence::optional,
+   .value = "[\"5 m\"]", .range = not_negative,
+   .text = "Depths at which the strain of every step and the stress after it are stored, for the program `rve_replay`, "
+           "which sends the packing the same way again, alone. Within the soil."},
+  {.path = "snapshot_interval", .field = member<&GrainOutput::snapshot_interval>, .unit = unit::s, .value = "1 s",
+   .range = positive, .text = "Time between them."},
+};
 
-  {.path = "analysis.kind", .kind = Kind::choice, .value = "dynamic", .choices = analysis_names,
-   .text = "What is solved. "
-           "A consolidation needs water.drainage \"coupled\", a load of kind \"step\", a rigid base and no "
-           "motion; a plate a dry box without motion, load and `mesh.distributed`; a biaxial block dimension 2, "
-           "without them, slope, base, water table, and what is written over the depth.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.kind; }},
-  {.path = "analysis.duration", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::required, .value = "20 s", .range = positive, .kinds = dynamic,
-   .text = "End of the run. At most 1e15 time steps.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.duration; }},
-  {.path = "analysis.time_step", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "ms",
-   .presence = Presence::optional, .value = "1 ms", .range = positive, .kinds = dynamic,
-   .text = "Time step, checked against the stable one; left out: `safety` times the stable one at the start.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.time_step; }},
-  {.path = "analysis.safety", .value = "0.8", .range = to_one, .reason = "because beyond the stable step the motion explodes",
-   .kinds = dynamic, .text = "Part of the stable time step that may be used.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.safety; }},
-  {.path = "analysis.mass_damping", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
-   .value = "0 1/s", .range = not_negative, .kinds = dynamic,
-   .text = "a_M: a force -a_M times mass and velocity; it damps frequency f by the fraction a_M / (4 pi f) of critical.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.mass_damping; }},
-  {.path = "analysis.highest_frequency", .kind = Kind::quantity, .dimension = Dimension::frequency, .unit = "Hz",
+constexpr Key analysis_keys[] = {
+  {.path = "kind", .field = member<&ColumnAnalysis::kind>, .value = "dynamic", .choices = analysis_names,
+   .text = "What is solved. A consolidation needs water.drainage \"coupled\", a load of kind \"step\", a rigid base "
+           "and no motion; a plate a dry box without motion, load and `mesh.distributed`; a biaxial block dimension 2, "
+           "without them, slope, base, water table, and what is written over the depth."},
+  {.path = "duration", .field = member<&ColumnAnalysis::duration>, .unit = unit::s, .presence = Presence::required,
+   .value = "20 s", .range = positive, .kinds = dynamic, .text = "End of the run. At most 1e15 time steps."},
+  {.path = "time_step", .field = member<&ColumnAnalysis::time_step>, .unit = unit::ms, .presence = Presence::optional,
+   .value = "1 ms", .range = positive, .kinds = dynamic,
+   .text = "Time step, checked against the stable one; left out: `safety` times the stable one at the start."},
+  {.path = "safety", .field = member<&ColumnAnalysis::safety>, .value = "0.8", .range = to_one,
+   .reason = "because beyond the stable step the motion explodes", .kinds = dynamic,
+   .text = "Part of the stable time step that may be used."},
+  {.path = "mass_damping", .field = member<&ColumnAnalysis::mass_damping>, .unit = unit::per_s, .value = "0 1/s",
+   .range = not_negative, .kinds = dynamic,
+   .text = "a_M: a force -a_M times mass and velocity; it damps frequency f by the fraction a_M / (4 pi f) of "
+           "critical."},
+  {.path = "highest_frequency", .field = member<&ColumnAnalysis::highest_frequency>, .unit = unit::Hz,
    .value = "25 Hz", .range = positive, .kinds = dynamic,
-   .text = "Highest frequency of interest. `viscosity` damps what vibrates faster; elements that are too long for its wave, "
-           "or for that of the motion if it has no such frequencies, are warned of; the summary tells how much of the "
-           "surface's acceleration lies above it.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.highest_frequency; }},
-  {.path = "analysis.viscosity", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "ms",
-   .value = "0.1 ms", .range = not_negative, .reason = "because a negative one would feed vibrations", .kinds = dynamic,
-   .text = "Viscosity beta of the skeleton over its modulus, which acts above `highest_frequency` f_c: it damps frequency f by "
-           "the fraction pi f beta f^2 / (f^2 + f_c^2) of critical (0.04 % at 10 Hz, 1.5 % at 58 Hz). Lowers the stable "
-           "time step dt to sqrt(beta^2 + dt^2) - beta: by 10 % where it is 1 ms, by 59 % where it is as small as beta. 0 ms: none, and layers and elements ring on (docs/results/column_dissipation.md).",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.viscosity; }},
-  {.path = "analysis.first_time", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::required, .value = "10 s", .range = positive, .kinds = consolidation,
-   .text = "End of the first time step after loading; those that follow rise geometrically. Elements where water drains are cut to "
-           "show it; where they cannot be, a warning states from when on results are right.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.first_time; }},
-  {.path = "analysis.last_time", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .presence = Presence::required, .value = "6 h", .range = positive, .kinds = consolidation,
-   .text = "End of the last time step. After `first_time`.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.last_time; }},
-  {.path = "analysis.steps", .kind = Kind::integer, .value = "50", .range = {2, 1e6},
-   .reason = "because first_time and last_time end a step each, and a million is beyond any use", .kinds = consolidation,
-   .text = "Number of time steps, each with its row in the results; the solver divides them as accuracy needs.",
-   .field = [](ColumnScene &s) -> Field { return &s.analysis.steps; }},
+   .text = "Highest frequency of interest. `viscosity` damps what vibrates faster; elements that are too long for its "
+           "wave, or for that of the motion if it has no such frequencies, are warned of; the summary tells how much "
+           "of the surface's acceleration lies above it."},
+  {.path = "viscosity", .field = member<&ColumnAnalysis::viscosity>, .unit = unit::ms, .value = "0.1 ms",
+   .range = not_negative, .reason = "because a negative one would feed vibrations", .kinds = dynamic,
+   .text = "Viscosity beta of the skeleton over its modulus, which acts above `highest_frequency` f_c: it damps "
+           "frequency f by the fraction pi f beta f^2 / (f^2 + f_c^2) of critical (0.04 % at 10 Hz, 1.5 % at 58 Hz). "
+           "Lowers the stable time step dt to sqrt(beta^2 + dt^2) - beta: by 10 % where it is 1 ms, by 59 % where it "
+           "is as small as beta. 0 ms: none, and layers and elements ring on (docs/results/column_dissipation.md)."},
+  {.path = "first_time", .field = member<&ColumnAnalysis::first_time>, .unit = unit::s, .presence = Presence::required,
+   .value = "10 s", .range = positive, .kinds = consolidation,
+   .text = "End of the first time step after loading; those that follow rise geometrically. Elements where water "
+           "drains are cut to show it; where they cannot be, a warning states from when on results are right."},
+  {.path = "last_time", .field = member<&ColumnAnalysis::last_time>, .unit = unit::s, .presence = Presence::required,
+   .value = "6 h", .range = positive, .kinds = consolidation, .text = "End of the last time step. After `first_time`."},
+  {.path = "steps", .field = member<&ColumnAnalysis::steps>, .value = "50", .range = {2, 1e6},
+   .reason = "because first_time and last_time end a step each, and a million is beyond any use",
+   .kinds = consolidation,
+   .text = "Number of time steps, each with its row in the results; the solver divides them as accuracy needs."},
+};
 
-  {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",
-   .text = "Folder of the run; left out: results/ and the name of the scene file.",
-   .field = [](ColumnScene &s) -> Field { return &s.output.folder; }},
-  {.path = "output.history_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
-   .value = "0.01 s", .range = {0, 10, true}, .reason = "because rows further apart show no shaking",
-   .text = "Time between rows of the histories, rounded to whole time steps; a consolidation writes every step.",
-   .field = [](ColumnScene &s) -> Field { return &s.output.history_interval; }},
-  {.path = "output.depths", .kind = Kind::quantity_list, .dimension = Dimension::length, .unit = "m",
-   .presence = Presence::optional, .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
-   .text = "Depths below the surface whose stress paths and motions get histories of their own. Within the soil.",
-   .field = [](ColumnScene &s) -> Field { return &s.output.depths; }},
-  {.path = "output.x", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m",
-   .presence = Presence::optional, .value = "10 m", .range = not_negative,
-   .text = "Of a strip: x of the vertical along which histories, depths and profiles are; left out: the middle between walls, "
-           "else 0 m, as all x are equal where sides are tied.",
-   .field = [](ColumnScene &s) -> Field { return &s.output.x; }},
-  {.path = "output.profile_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+constexpr Key output_keys[] = {
+  {.path = "folder", .field = member<&ColumnOutput::folder>, .presence = Presence::optional, .value = "results/my-run",
+   .text = "Folder of the run; left out: results/ and the name of the scene file."},
+  {.path = "history_interval", .field = member<&ColumnOutput::history_interval>, .unit = unit::s, .value = "0.01 s",
+   .range = {0, 10, true}, .reason = "because rows further apart show no shaking",
+   .text = "Time between rows of the histories, rounded to whole time steps; a consolidation writes every step."},
+  {.path = "depths", .field = member<&ColumnOutput::depths>, .unit = unit::m, .presence = Presence::optional,
+   .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
+   .text = "Depths below the surface whose stress paths and motions get histories of their own. Within the soil."},
+  {.path = "x", .field = member<&ColumnOutput::x>, .unit = unit::m, .presence = Presence::optional, .value = "10 m",
+   .range = not_negative,
+   .text = "Of a strip: x of the vertical along which histories, depths and profiles are; left out: the middle between "
+           "walls, else 0 m, as all x are equal where sides are tied."},
+  {.path = "profile_interval", .field = member<&ColumnOutput::profile_interval>, .unit = unit::s,
    .presence = Presence::optional, .value = "0.1 s", .range = positive,
-   .text = "Time between profiles over the depth, rounded likewise; left out: maxima only. A consolidation writes every step.",
-   .field = [](ColumnScene &s) -> Field { return &s.output.profile_interval; }},
-  {.path = "output.paraview_interval", .kind = Kind::quantity, .dimension = Dimension::duration, .unit = "s",
+   .text = "Time between profiles over the depth, rounded likewise; left out: maxima only. A consolidation writes "
+           "every step."},
+  {.path = "paraview_interval", .field = member<&ColumnOutput::paraview_interval>, .unit = unit::s,
    .presence = Presence::optional, .value = "0.5 s", .range = positive,
-   .text = "Time between files for ParaView, rounded likewise; left out: none. A consolidation writes every step.",
-   .field = [](ColumnScene &s) -> Field { return &s.output.paraview_interval; }},
-  {.path = "output.checkpoint", .kind = Kind::quantity, .dimension = Dimension::interval, .unit = "min",
-   .value = "5 min", .range = positive, .text = "Wall-clock time between checkpoints.",
-   .field = [](ColumnScene &s) -> Field { return &s.output.checkpoint_minutes; }},
-  {.path = "output.spectrum_damping", .value = "0.05", .range = {0, 1, false, true},
-   .reason = "because this is a fraction of critical", .text = "Damping of the oscillators of response spectra.",
-   .field = [](ColumnScene &s) -> Field { return &s.output.spectrum_damping; }},
+   .text = "Time between files for ParaView, rounded likewise; left out: none. A consolidation writes every step."},
+  {.path = "checkpoint", .field = member<&ColumnOutput::checkpoint_minutes>, .unit = unit::min, .value = "5 min",
+   .range = positive, .text = "Wall-clock time between checkpoints."},
+  {.path = "spectrum_damping", .field = member<&ColumnOutput::spectrum_damping>, .value = "0.05",
+   .range = {0, 1, false, true}, .reason = "because this is a fraction of critical",
+   .text = "Damping of the oscillators of response spectra."},
 };
 
 constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
@@ -340,30 +306,30 @@ A scene is one TOML file that says all about a run of `soil_column`. This page i
 
 const SceneSchema &column_schema()
 {
-  static const KeyTable keys{
-      ground_keys,
-      splice("mesh", box_keys(), 0, [](ColumnScene &s) -> ColumnMesh & { return s.mesh; }),
-      splice("load", strip_load_keys(), 0, [](ColumnScene &s) -> ColumnLoad & { return s.load; }),
-      splice("water", pore_fluid_keys(), 0, [](ColumnScene &s) -> Water & { return s.water; }),
-      splice("layer", saturation_keys(), 0, [](ColumnScene &, ColumnLayer &l) -> Layer & { return l; }),
-      splice("slope", slope_keys(), 0, [](ColumnScene &s) -> Slope & { return s.slope; }),
-      splice("layer", iwan_keys(), iwan, [](ColumnScene &, ColumnLayer &l) -> IwanParameters & { return l.iwan; }),
-      splice("layer", mohr_coulomb_keys(), mohr_coulomb,
-             [](ColumnScene &, ColumnLayer &l) -> MohrCoulombParameters & { return l.mohr_coulomb; }),
-      splice("layer", specimen_keys(), grains,
-             [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
-      own_sand_keys,
-      splice("layer", lot_keys(), grains, [](ColumnScene &, ColumnLayer &l) -> SpecimenRequest & { return l.grains; }),
-      loading_keys,
-      splice("motion", ground_motion_keys(), 0, [](ColumnScene &, ColumnMotion &m) -> ColumnMotion & { return m; }),
-      splice("grains", packing_keys(), 0, [](ColumnScene &s) -> RveMaterialSettings & { return s.grains; }),
-      result_keys,
-      splice("analysis", plate_keys(), kind_bit(AnalysisKind::plate),
-             [](ColumnScene &s) -> Plate & { return s.plate; }),
-      splice("analysis", biaxial_keys(), kind_bit(AnalysisKind::biaxial),
-             [](ColumnScene &s) -> Biaxial & { return s.biaxial; }),
-      splice("analysis", load_step_keys(), kind_bit(AnalysisKind::plate) | kind_bit(AnalysisKind::biaxial),
-             [](ColumnScene &s) -> LoadSteps & { return s.load_steps; })};
+  static const KeyTable keys{title_key,
+                             splice<&ColumnScene::mesh>("mesh", mesh_keys),
+                             splice<&ColumnScene::mesh>("mesh", box_keys()),
+                             splice<&ColumnScene::water>("water", water_keys),
+                             splice<&ColumnScene::water>("water", pore_fluid_keys()),
+                             splice<&ColumnScene::slope>("slope", slope_keys()),
+                             KeyRun(layer_keys, "layer"),
+                             splice("layer", saturation_keys(), 0, [](ColumnLayer &layer) -> Layer & { return layer; }),
+                             splice<&ColumnLayer::iwan>("layer", iwan_keys(), iwan),
+                             splice<&ColumnLayer::mohr_coulomb>("layer", mohr_coulomb_keys(), mohr_coulomb),
+                             splice<&ColumnLayer::grains>("layer", specimen_keys(), grains),
+                             KeyRun(own_sand_key, "layer"),
+                             splice<&ColumnLayer::grains>("layer", lot_keys(), grains),
+                             splice<&ColumnScene::base>("base", base_keys),
+                             KeyRun(ground_motion_keys().keys, "motion"),
+                             splice<&ColumnScene::load>("load", strip_load_keys()),
+                             splice<&ColumnScene::load>("load", load_keys),
+                             splice<&ColumnScene::grains>("grains", packing_keys()),
+                             splice<&ColumnScene::grain_output>("grains", grain_output_keys),
+                             splice<&ColumnScene::analysis>("analysis", analysis_keys),
+                             splice<&ColumnScene::plate>("analysis", plate_keys(), kind_bit(AnalysisKind::plate)),
+                             splice<&ColumnScene::biaxial>("analysis", biaxial_keys(), kind_bit(AnalysisKind::biaxial)),
+                             splice<&ColumnScene::load_steps>("analysis", load_step_keys(), slow),
+                             splice<&ColumnScene::output>("output", output_keys)};
   static const SceneSchema schema{.keys = keys.keys(),
                                   .sections = sections,
                                   .groups = groups,

@@ -23,14 +23,13 @@ double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 // clang-format off
 constexpr Key in_slope[] = {
-  {.path = "angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "0 deg",
-   .range = {0, 60}, .reason = "because x points down the slope, and no slope of soil is steeper than 60 deg",
-   .text = "Inclination of the surface to the horizontal. Less than the soil can bear; packings a friction of 60 deg at most.",
-   .field = [](Slope &s) -> Field { return &s.tangent; }},
-  {.path = "water", .kind = Kind::choice, .value = "seepage", .choices = water_choices,
-   .text = "Water that flows parallel to the surface, below a water table parallel to it, and drags the soil downslope; or "
-           "a slope submerged by water at rest. Of no meaning if there is no water.",
-   .field = [](Slope &s) -> Field { return &s.water; }},
+  {.path = "angle", .field = member<&Slope::tangent>, .unit = unit::deg, .value = "0 deg", .range = {0, 60},
+   .reason = "because x points down the slope, and no slope of soil is steeper than 60 deg",
+   .text = "Inclination of the surface to the horizontal. Less than the soil can bear; packings a friction of 60 deg "
+           "at most."},
+  {.path = "water", .field = member<&Slope::water>, .value = "seepage", .choices = water_choices,
+   .text = "Water that flows parallel to the surface, below a water table parallel to it, and drags the soil "
+           "downslope; or a slope submerged by water at rest. Of no meaning if there is no water."},
 };
 // clang-format on
 

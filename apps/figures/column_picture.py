@@ -28,16 +28,16 @@ def forces(file):
         return results["snapshot/contacts/normal_force"][:]
 
 
-def draw_packing(axes, file, mean_force):
-    """Grains from the side, x to the right and z upwards; a line along each contact, as wide as its normal force."""
+def draw_packing(axes, file, mean_force, up=2):
+    """Grains from the side, x to the right, y (1) or z (2) up; a line along each contact, as wide as its force."""
     with h5py.File(file) as results:
         grains = results["snapshot/grains/position"][:]
         contact = {name: results[f"snapshot/contacts/{name}"][:]
                    for name in ("first", "second", "normal", "normal_force", "overlap")}
-    place, radius = grains[:, (0, 2)], grains[:, 3]
+    place, radius = grains[:, (0, up)], grains[:, 3]
     axes.add_collection(EllipseCollection(2 * radius, 2 * radius, np.zeros_like(radius), units="xy", offsets=place,
                                           transOffset=axes.transData, facecolor=GREY, edgecolor="none", alpha=0.13))
-    normal, lines = contact["normal"][:, (0, 2)], []
+    normal, lines = contact["normal"][:, (0, up)], []
     for grain, sign in ((contact["first"], 1), (contact["second"], -1)):  # two halves, also through a face of the cell
         begin, reach = place[grain], (radius[grain] - contact["overlap"] / 2)[:, None]
         lines += list(np.stack([begin, begin + sign * reach * normal], axis=1))
@@ -73,10 +73,15 @@ def draw_map(column, figure, axes, depths, times):
     axes.set_xlabel("Time (s)")
 
 
+def snapshot_rows(column):
+    """The first depths that have snapshots."""
+    asked = [quantity(depth) for depth in column.scene.get("grains", {}).get("snapshot_depths", [])]
+    return [(depth, taken) for k, depth in enumerate(asked) if len(taken := snapshots(column.folder, k)) > 1][:ROWS]
+
+
 def picture(column):
     """At the start, in the middle and at the end."""
-    asked = [quantity(depth) for depth in column.scene.get("grains", {}).get("snapshot_depths", [])]
-    rows = [(depth, taken) for k, depth in enumerate(asked) if len(taken := snapshots(column.folder, k)) > 1][:ROWS]
+    rows = snapshot_rows(column)
     if not rows or "IR" not in column.grains.profiles or not column.moving:
         return None
     figure = plt.figure(figsize=(10.5, 5.2), layout="constrained")

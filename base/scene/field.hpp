@@ -5,9 +5,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -20,107 +22,105 @@ struct PercentPair
 };
 using SizeCurve = std::vector<std::pair<double, double>>;
 
-/// A pointer to an enumeration whose values 0, 1, ... are the words of the key in their order, or to a variant whose
-/// alternatives are: setting it makes the alternative with its defaults.
-class EnumField
+/// A place whose values 0, 1, ... are the words of the key in their order.
+struct EnumField
 {
-public:
-  template <class Enum>
-  requires std::is_enum_v<Enum> EnumField(Enum *place)
-      : place_(place), get_([](const void *p) { return static_cast<std::size_t>(*static_cast<const Enum *>(p)); }),
-        set_([](void *p, std::size_t word) { *static_cast<Enum *>(p) = static_cast<Enum>(word); })
-  {}
-  template <class... Kinds>
-  EnumField(std::variant<Kinds...> *place)
-      : place_(place), get_([](const void *p) { return static_cast<const std::variant<Kinds...> *>(p)->index(); }),
-        set_([](void *p, std::size_t word) {
-          static const std::variant<Kinds...> kinds[] = {Kinds{}...};
-          *static_cast<std::variant<Kinds...> *>(p) = kinds[word];
-        })
-  {}
+  std::function<std::size_t()> get;
+  std::function<void(std::size_t word)> set;
+};
 
-  /// Of a place that is no enumeration but has a number all the same.
-  EnumField(void *place, std::size_t (*get)(const void *), void (*set)(void *, std::size_t))
-      : place_(place), get_(get), set_(set)
-  {}
-
-  std::size_t get() const { return get_(place_); }
-  void set(std::size_t word) const { set_(place_, word); }
-
-private:
-  void *place_;
-  std::size_t (*get_)(const void *);
-  void (*set_)(void *, std::size_t);
+/// Form of a value in the file.
+enum class Kind
+{
+  quantity,      ///< text with a unit, "10 mm"
+  number,        ///< plain number without unit
+  integer,       ///< plain whole number >= 0
+  boolean,       ///< true or false
+  choice,        ///< one of a list of words
+  text,          ///< any text in quotes
+  table,         ///< { ... }; its being there may switch physics on
+  quantity_list, ///< ["1 m", "2 m"]
+  percent_pair,  ///< [low, high], percent
+  size_curve     ///< [["0.0631 mm", 1.53], ...], diameter and percent finer
 };
 
 /// monostate: nowhere (a table that only holds others).
 using Field = std::variant<std::monostate, double *, std::optional<double> *, std::uint64_t *, unsigned *, bool *,
                            std::string *, EnumField, std::vector<double> *, PercentPair, SizeCurve *>;
 
-namespace detail
-{
-/// A lambda (First &) or (First &, Second &) of an empty type as a function of forgotten types.
-template <class Result, class Lambda, class Returned, class First, class Second>
-constexpr auto erased(Returned (Lambda::*)(First &, Second &) const) -> Result (*)(void *, void *)
-{
-  return [](void *first, void *second) -> Result {
-    return Lambda{}(*static_cast<First *>(first), *static_cast<Second *>(second));
-  };
-}
-template <class Result, class Lambda, class Returned, class First>
-constexpr auto erased(Returned (Lambda::*)(First &) const) -> Result (*)(void *, void *)
-{
-  return [](void *first, void *) -> Result { return Lambda{}(*static_cast<First *>(first)); };
-}
-} // namespace detail
-
-/// Where the struct of a fragment (base/scene/fragment.hpp) lies in a scene: made from a lambda without captures,
-/// (Scene &) -> Part &, or (Scene &, Item &) -> Part &. The types are forgotten.
-class PartAccess
+/// A struct of any type, so that one machinery reads every kind of scene.
+class StructRef
 {
 public:
-  constexpr PartAccess() = default;
+  /// Constant or not: whoever holds the reference knows whether it may write.
+  template <class Struct>
+  requires(!std::is_same_v<Struct, StructRef>) StructRef(const Struct &place)
+      : place_(const_cast<Struct *>(&place)), type_(&typeid(Struct))
+  {}
+
+  /// Of the type that it was made from. A class with a KeyRoot, the base that lists of its kind hold, is found there.
+  /// @throws std::bad_cast  it is of another type
+  template <class Struct>
+  Struct &as() const
+  {
+    if constexpr (requires { typename Struct::KeyRoot; })
+      if constexpr (!std::is_same_v<Struct, typename Struct::KeyRoot>)
+        return dynamic_cast<Struct &>(as<typename Struct::KeyRoot>());
+    if (*type_ != typeid(Struct))
+      throw std::bad_cast();
+    return *static_cast<Struct *>(place_);
+  }
+
+private:
+  void *place_;
+  const std::type_info *type_;
+};
+
+/// A function of a struct, made from a lambda (Struct &) without captures; the type is forgotten.
+template <class Result>
+class Access
+{
+public:
+  constexpr Access() = default;
   template <class Lambda>
   requires std::is_empty_v<Lambda>
-  constexpr PartAccess(Lambda) : call_(detail::erased<Reference>(&Lambda::operator())) {}
+  constexpr Access(Lambda) : Access(&Lambda::operator()) {}
 
-  void *operator()(void *scene, void *item) const { return call_(scene, item).place; }
+  Result operator()(StructRef place) const { return call_(place); }
   constexpr explicit operator bool() const { return call_ != nullptr; }
 
 private:
-  struct Reference
-  {
-    void *place;
-    template <class Part>
-    Reference(Part &part) : place(&part)
-    {}
-  };
-  Reference (*call_)(void *, void *) = nullptr;
+  template <class Lambda, class Returned, class Struct>
+  constexpr Access(Returned (Lambda::*)(Struct &) const)
+      : call_([](StructRef place) -> Result { return Lambda{}(place.as<Struct>()); })
+  {}
+
+  Result (*call_)(StructRef) = nullptr;
 };
 
-/// How a key finds its field: made from a lambda without captures, (Scene &) -> Field, or (Scene &, Item &) -> Field
-/// where Item is what an entry of the key's array of tables becomes. The types are forgotten, so that one machinery
-/// reads every kind of scene; who calls it must pass objects of those types.
-class FieldAccess
+/// Where the struct of a fragment (base/scene/fragment.hpp) lies in a larger one: (Whole &) -> Part &.
+using PartAccess = Access<StructRef>;
+
+/// How a key finds its field, (Struct &) -> Field: member<&Struct::x> below, or a lambda.
+class FieldAccess : public Access<Field>
 {
 public:
   constexpr FieldAccess() = default;
   template <class Lambda>
   requires std::is_empty_v<Lambda>
-  constexpr FieldAccess(Lambda) : call_(detail::erased<Field>(&Lambda::operator())) {}
+  constexpr FieldAccess(Lambda access) : Access<Field>(access), kind_(kind_of(&Lambda::operator())) {}
 
-  template <class Scene, class Item>
-  requires(!std::is_pointer_v<Scene> && !std::is_pointer_v<Item>) Field operator()(Scene &scene, Item &item) const
+  /// What the type of the field says of the form in the file: `number` may be a quantity.
+  constexpr Kind kind() const { return kind_; }
+
+  Field operator()(StructRef place) const
   {
-    return (*this)(static_cast<void *>(&scene), static_cast<void *>(&item));
+    if (!*this)
+      return {};
+    for (std::size_t i = n_parts_; i-- > 0;)
+      place = parts_[i](place);
+    return Access<Field>::operator()(place);
   }
-  Field operator()(void *scene, void *item) const
-  {
-    for (std::size_t i = n_parts_; i-- > 0; item = nullptr)
-      scene = parts_[i](scene, item);
-    return call_(scene, item);
-  }
-  constexpr explicit operator bool() const { return call_ != nullptr; }
 
   /// The same field of a struct that lies within a larger one.   @pre at most three levels
   constexpr FieldAccess within(PartAccess part) const
@@ -131,40 +131,80 @@ public:
   }
 
 private:
-  Field (*call_)(void *, void *) = nullptr;
+  template <class Lambda, class Returned, class Struct>
+  static constexpr Kind kind_of(Returned (Lambda::*)(Struct &) const)
+  {
+    constexpr auto is = []<class... Types>(std::type_identity<Types>...) {
+      return (std::is_same_v<Returned, Types> || ...);
+    };
+    if (is(std::type_identity<std::uint64_t *>(), std::type_identity<unsigned *>()))
+      return Kind::integer;
+    return is(std::type_identity<bool *>())                  ? Kind::boolean
+           : is(std::type_identity<std::string *>())         ? Kind::text
+           : is(std::type_identity<EnumField>())             ? Kind::choice
+           : is(std::type_identity<std::vector<double> *>()) ? Kind::quantity_list
+           : is(std::type_identity<PercentPair>())           ? Kind::percent_pair
+           : is(std::type_identity<SizeCurve *>())           ? Kind::size_curve
+                                                             : Kind::number;
+  }
+
   std::array<PartAccess, 3> parts_ = {}; ///< from the innermost outwards
   std::size_t n_parts_ = 0;
-};
-
-/// How the entries of an array of tables are reached in a scene.
-struct ItemAccess
-{
-  std::size_t (*count)(const void *scene) = nullptr;
-  void *(*at)(void *scene, std::size_t i) = nullptr;
-  void *(*add)(void *scene) = nullptr; ///< one more, with the defaults of its struct
-
-  constexpr explicit operator bool() const { return count != nullptr; }
+  Kind kind_ = Kind::number;
 };
 
 namespace detail
 {
-template <class Scene, class Item, std::vector<Item> Scene::*member>
-struct Items
+template <auto member>
+struct Member;
+template <class Struct_, class Value_, Value_ Struct_::*member>
+struct Member<member>
 {
-  static constexpr ItemAccess access{
-      [](const void *scene) { return (static_cast<const Scene *>(scene)->*member).size(); },
-      [](void *scene, std::size_t i) -> void * { return &(static_cast<Scene *>(scene)->*member)[i]; },
-      [](void *scene) -> void * { return &(static_cast<Scene *>(scene)->*member).emplace_back(); }};
+  using Struct = Struct_;
+  using Value = Value_;
 };
 
-template <class Scene, class Item>
-Scene scene_of(std::vector<Item> Scene::*);
-template <class Scene, class Item>
-Item item_of(std::vector<Item> Scene::*);
+/// A member of a struct, or a member of its member.
+template <auto... members, class Struct>
+auto &member_in(Struct &place)
+{
+  return (place.*....*members);
+}
+
+template <class Value>
+auto field_of(Value &place)
+{
+  if constexpr (std::is_enum_v<Value>)
+    return EnumField{[&place] { return static_cast<std::size_t>(place); },
+                     [&place](std::size_t word) { place = static_cast<Value>(word); }};
+  else
+    return &place;
+}
 } // namespace detail
+
+/// A member of a struct, or a member of its member: member<&Scene::grading, &GradingSpec::seed>.
+/// member_of<Struct, ...>: one that the struct has from its base.
+template <class Struct, auto... members>
+inline constexpr FieldAccess member_of{
+    [](Struct &place) { return detail::field_of(detail::member_in<members...>(place)); }};
+template <auto first, auto... others>
+inline constexpr FieldAccess member = member_of<typename detail::Member<first>::Struct, first, others...>;
+
+/// How the entries of an array of tables are reached in a scene.
+struct ItemAccess
+{
+  Access<std::size_t> count = {};
+  StructRef (*at)(StructRef scene, std::size_t i) = nullptr; ///< behind the last: one more, with its defaults
+
+  constexpr explicit operator bool() const { return at != nullptr; }
+};
 
 /// items_of<&Scene::stages>: of a vector in the scene.
 template <auto member>
-inline constexpr ItemAccess items_of =
-    detail::Items<decltype(detail::scene_of(member)), decltype(detail::item_of(member)), member>::access;
+inline constexpr ItemAccess items_of{
+    [](typename detail::Member<member>::Struct &scene) { return (scene.*member).size(); },
+    [](StructRef scene, std::size_t i) -> StructRef {
+      auto &items = scene.as<typename detail::Member<member>::Struct>().*member;
+      return i < items.size() ? items[i] : items.emplace_back();
+    }};
 } // namespace isostat

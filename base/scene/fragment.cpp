@@ -11,7 +11,7 @@ KeyTable::KeyTable(std::span<const KeyRun> runs)
     for (Key key : run.keys)
       {
         if (!run.section.empty())
-          key.path = paths_.emplace_back(fmt::format("{}.{}", run.section, key.path));
+          key.path = paths_.emplace_back(fmt::format("{}{}{}", run.section, key.path.empty() ? "" : ".", key.path));
         if (run.kinds != 0)
           key.kinds = run.kinds;
         if (run.part)

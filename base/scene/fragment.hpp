@@ -8,13 +8,12 @@
 
 namespace isostat
 {
-/// The keys of a struct that several kinds of scene contain. Paths have no section ("damping"), fields are made from
-/// lambdas (Part &) -> Field, kinds are left to the scene.
+/// The keys of a struct that several kinds of scene contain. Paths have no section ("damping"; none: the table itself),
+/// fields are those of the struct, kinds are left to the scene.
 ///
-///     fem/material/iwan_scene.hpp     SceneFragment<IwanParameters> iwan_keys();
-///     apps/deposit/schema.cpp         KeyTable table{own_keys,
-///                                                    splice("layer", iwan_keys(), bit(LayerMaterial::iwan),
-///                                                           [](Scene &, Layer &l) -> auto & { return l.iwan; })};
+///     fem/water/pore_fluid_scene.hpp  SceneFragment<Water> pore_fluid_keys();
+///     apps/deposit/schema.cpp         KeyTable table{title_key,
+///                                                    splice<&ColumnScene::water>("water", pore_fluid_keys())};
 template <class Part>
 struct SceneFragment
 {
@@ -27,7 +26,7 @@ struct KeyRun
   template <std::size_t n>
   KeyRun(const Key (&own)[n]) : keys(own)
   {}
-  KeyRun(std::span<const Key> keys_, std::string section_, unsigned kinds_, PartAccess part_)
+  KeyRun(std::span<const Key> keys_, std::string section_ = {}, unsigned kinds_ = 0, PartAccess part_ = {})
       : keys(keys_), section(std::move(section_)), kinds(kinds_), part(part_)
   {}
 
@@ -37,20 +36,29 @@ struct KeyRun
   PartAccess part = {}; ///< where their struct is; none: their fields are those of the scene itself
 };
 
-namespace detail
-{
-template <class Lambda, class Returned, class... Arguments>
-Returned returned_by(Returned (Lambda::*)(Arguments...) const);
-} // namespace detail
-
 /// The keys of a fragment in a section of a scene, or (no section) in a larger fragment.
 /// @param kinds  bits of the kinds of the section that take them; 0: all of them
-/// @param part  lambda without captures, (Scene &) -> Part &, or (Scene &, Item &) -> Part &
+/// @param part  lambda without captures, (Whole &) -> Part &; Whole: what an entry of an array of tables becomes, else
+///        the scene
 template <class Part, class Lambda>
 KeyRun splice(std::string section, SceneFragment<Part> fragment, unsigned kinds, Lambda part)
 {
-  static_assert(std::is_same_v<decltype(detail::returned_by(&Lambda::operator())), Part &>);
   return {fragment.keys, std::move(section), kinds, part};
+}
+/// The same of a struct that is a member, or a member of its member.
+template <auto first, auto... others, class Part>
+KeyRun splice(std::string section, SceneFragment<Part> fragment, unsigned kinds = 0)
+{
+  using Whole = typename detail::Member<first>::Struct;
+  return splice(std::move(section), fragment, kinds,
+                [](Whole &whole) -> Part & { return detail::member_in<first, others...>(whole); });
+}
+template <auto first, auto... others, std::size_t n>
+KeyRun splice(std::string section, const Key (&own)[n], unsigned kinds = 0)
+{
+  using Whole = typename detail::Member<first>::Struct;
+  using Part = std::remove_reference_t<decltype(detail::member_in<first, others...>(std::declval<Whole &>()))>;
+  return splice<first, others...>(std::move(section), SceneFragment<Part>{own}, kinds);
 }
 
 /// The keys of a kind of scene, or of a fragment made of others, in the order in which they are written.

@@ -19,30 +19,10 @@ std::string bare_name(Dimension dimension)
 
 std::string kind_text(const Key &key)
 {
-  switch (key.kind)
-    {
-    case Kind::quantity:
-      return bare_name(key.dimension);
-    case Kind::number:
-      return "number";
-    case Kind::integer:
-      return "integer";
-    case Kind::boolean:
-      return "true or false";
-    case Kind::choice:
-      return "word";
-    case Kind::text:
-      return "text";
-    case Kind::table:
-      return "table";
-    case Kind::quantity_list:
-      return fmt::format("[{}, ...]", bare_name(key.dimension));
-    case Kind::percent_pair:
-      return "[percent, percent]";
-    case Kind::size_curve:
-      return "rows of [length, percent]";
-    }
-  return "";
+  constexpr const char *texts[] = {"{}",   "number", "integer",   "true or false",      "word",
+                                   "text", "table",  "[{}, ...]", "[percent, percent]", "rows of [length, percent]"};
+  static_assert(std::size(texts) == static_cast<std::size_t>(Kind::size_curve) + 1);
+  return fmt::format(fmt::runtime(texts[static_cast<std::size_t>(key.kind())]), bare_name(key.unit.dimension));
 }
 
 std::string default_text(const Key &key)

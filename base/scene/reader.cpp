@@ -43,7 +43,7 @@ void check_known(const SceneDocument &document, const toml::table &table, const 
       const Section *section = prefix.empty() ? schema.find_section(path) : nullptr;
       if (!key && !section)
         refuse_unknown(document, path);
-      if (!section && key->kind != Kind::table)
+      if (!section && key->kind() != Kind::table)
         continue;
       if (section && section->items)
         continue; // each of its tables on its own
@@ -95,7 +95,7 @@ void check_kind(const SceneDocument &document, const Section &section, std::size
 void fill_key(const SceneDocument &document, const Key &key, const std::string &path, const Field &field)
 {
   const toml::node *node = document.find(path);
-  if (key.kind == Kind::table)
+  if (key.kind() == Kind::table)
     {
       if (bool *const *present = std::get_if<bool *>(&field))
         **present = node != nullptr;
@@ -109,24 +109,23 @@ void fill_key(const SceneDocument &document, const Key &key, const std::string &
 }
 
 /// One table: the kind first, since it says what else belongs there.
-void fill_table(const SceneDocument &document, const Section &section, const std::string &prefix, void *scene,
-                void *item)
+void fill_table(const SceneDocument &document, const Section &section, const std::string &prefix, StructRef place)
 {
   const SceneSchema &schema = document.schema();
   const Key *kind_key = schema.kind_key(section);
   std::size_t kind = 0;
   if (kind_key)
     {
-      fill_key(document, *kind_key, joined(prefix, kind_key->name()), kind_key->field(scene, item));
-      kind = kind_number(schema, section, scene, item);
+      fill_key(document, *kind_key, joined(prefix, kind_key->name()), kind_key->field(place));
+      kind = kind_number(schema, section, place);
       check_kind(document, section, kind, prefix);
     }
   for (const Key &key : schema.keys)
     if (key.section() == section.name && &key != kind_key && takes_key(key, kind))
-      fill_key(document, key, joined(prefix, key.name()), key.field(scene, item));
+      fill_key(document, key, joined(prefix, key.name()), key.field(place));
 }
 
-void fill_array(const SceneDocument &document, const Section &section, void *scene)
+void fill_array(const SceneDocument &document, const Section &section, StructRef scene)
 {
   const std::string name(section.name);
   const toml::node *node = document.find(name);
@@ -143,7 +142,7 @@ void fill_array(const SceneDocument &document, const Section &section, void *sce
       if (!array->get(i)->is_table())
         document.refuse(prefix, fmt::format("must be a table. Write [[{}]] on a line of its own.", name));
       check_known(document, *array->get(i)->as_table(), prefix);
-      fill_table(document, section, prefix, scene, section.items.add(scene));
+      fill_table(document, section, prefix, section.items.at(scene, i));
     }
 }
 
@@ -221,39 +220,39 @@ std::string results_folder(const std::string &scene_path)
 
 bool takes_key(const Key &key, std::size_t kind) { return key.kinds == 0 || key.belongs_to(kind); }
 
-std::size_t kind_number(const SceneSchema &schema, const Section &section, void *scene, void *item)
+std::size_t kind_number(const SceneSchema &schema, const Section &section, StructRef place)
 {
   const Key *key = schema.kind_key(section);
-  return key ? std::get<EnumField>(key->field(scene, item)).get() : 0;
+  return key ? std::get<EnumField>(key->field(place)).get() : 0;
 }
 
-void fill_scene(const SceneDocument &document, void *scene)
+void fill_scene(const SceneDocument &document, StructRef scene)
 {
   const SceneSchema &schema = document.schema();
   check_known(document, document.root(), "");
   for (const Key &key : schema.keys)
     if (key.section().empty())
-      fill_key(document, key, std::string(key.path), key.field(scene, nullptr));
+      fill_key(document, key, std::string(key.path), key.field(scene));
   for (const Section &section : schema.sections)
     if (!section.items)
-      fill_table(document, section, std::string(section.name), scene, nullptr);
+      fill_table(document, section, std::string(section.name), scene);
   for (const Section &section : schema.sections)
     if (section.items)
       fill_array(document, section, scene);
 }
 
-void check_groups(const SceneDocument &document, void *scene)
+void check_groups(const SceneDocument &document, StructRef scene)
 {
   const SceneSchema &schema = document.schema();
   for (const KeyGroup &group : schema.groups)
     {
       const Section &section = section_of(schema, group);
       if (!section.items)
-        check_group(document, group, std::string(section.name), kind_number(schema, section, scene, nullptr));
+        check_group(document, group, std::string(section.name), kind_number(schema, section, scene));
       else
         for (std::size_t i = 0; i < section.items.count(scene); ++i)
           check_group(document, group, fmt::format("{}.{}", section.name, i),
-                      kind_number(schema, section, scene, section.items.at(scene, i)));
+                      kind_number(schema, section, section.items.at(scene, i)));
     }
 }
 } // namespace isostat

@@ -22,7 +22,7 @@ std::string results_folder(const std::string &scene_path);
 /// owner of the schema.
 /// @param scene  of the type that the schema's keys and arrays of tables were made for; with its defaults
 /// @throws InputError      tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp
-void fill_scene(const SceneDocument &document, void *scene);
+void fill_scene(const SceneDocument &document, StructRef scene);
 
 /// Stores one value in its field.  @throws InputError through document.refuse(path, ...)
 void read_value(const SceneDocument &document, const Key &key, const std::string &path, const toml::node &node,
@@ -30,10 +30,10 @@ void read_value(const SceneDocument &document, const Key &key, const std::string
 
 /// Keys of one group exclude each other, and of some groups one must be given. @param scene  as filled
 /// @throws InputError      tested: tests/dem/scene/scene_error_test.cpp, tests/apps/deposit/scene_error_test.cpp
-void check_groups(const SceneDocument &document, void *scene);
+void check_groups(const SceneDocument &document, StructRef scene);
 
-/// Number of the kind of a table, by its filled kind key.  @param item  entry of an array of tables, else anything
-std::size_t kind_number(const SceneSchema &schema, const Section &section, void *scene, void *item);
+/// Number of the kind of a table, by its filled kind key.  @param place  entry of an array of tables, else the scene
+std::size_t kind_number(const SceneSchema &schema, const Section &section, StructRef place);
 /// Does the key belong to a table of this kind?
 bool takes_key(const Key &key, std::size_t kind);
 } // namespace isostat

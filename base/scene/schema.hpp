@@ -12,21 +12,6 @@
 
 namespace isostat
 {
-/// Form of a value in the file.
-enum class Kind
-{
-  quantity,      ///< text with a unit, "10 mm"
-  number,        ///< plain number without unit
-  integer,       ///< plain whole number >= 0
-  boolean,       ///< true or false
-  choice,        ///< one of a list of words
-  text,          ///< any text in quotes
-  table,         ///< { ... }; its being there may switch physics on
-  quantity_list, ///< ["1 m", "2 m"]
-  percent_pair,  ///< [low, high], percent
-  size_curve     ///< [["0.0631 mm", 1.53], ...], diameter and percent finer
-};
-
 enum class Presence
 {
   standard,   ///< may be left out: `value` is the default
@@ -58,9 +43,9 @@ struct Key
   /// "motion.damping"; in an array of tables without the number: "stage.strain". A key whose range or meaning hangs on
   /// the kind has an entry for each meaning, without kinds in common.
   std::string_view path = {};
-  Kind kind = Kind::number;
-  Dimension dimension = Dimension::length; ///< of a quantity, quantity_list or size_curve
-  const char *unit = "";                   ///< of those, the one it is shown in
+  FieldAccess field = {}; ///< none: nothing to keep (a table that only holds others)
+  bool table = false;     ///< { ... } that holds other keys
+  ShownUnit unit = {};    ///< of a quantity, quantity_list or size_curve
   Presence presence = Presence::standard;
   const char *value = ""; ///< default or example as it stands in the file, without quotes; "" for no text
   Range range = {};
@@ -69,8 +54,8 @@ struct Key
   unsigned kinds = 0;          ///< bit (1 << kind) for each kind of its section it belongs to; 0: to all
   std::string_view group = {}; ///< keys of one group of a section exclude each other
   const char *text = "";       ///< one sentence
-  FieldAccess field = {};
 
+  Kind kind() const;                     ///< follows from field, unit and words
   std::string_view section() const;      ///< "motion"; "" at the top of the file
   std::string_view name() const;         ///< path within the section, "rolling.limit"
   bool reads_as(const Key &other) const; ///< the same path, default, range and words: only kinds or fields may differ
@@ -115,7 +100,7 @@ struct SceneSchema
   const char *defaults_head = "";        ///< first comment of --print-defaults
   const char *manual_head = "";          ///< the manual until the table of units
   /// A key that to_toml leaves out because its value follows from others; null: there is none.
-  bool (*is_implied)(const Key &key, const void *scene) = nullptr;
+  bool (*is_implied)(const Key &key, StructRef scene) = nullptr;
 
   const Key *find_key(std::string_view path) const; ///< the first with this path, null if there is none
   const Section *find_section(std::string_view name) const;

@@ -14,8 +14,8 @@ namespace
 {
 std::string bound_text(const Key &key, double bound)
 {
-  const bool has_unit = key.kind == Kind::quantity || key.kind == Kind::quantity_list;
-  return has_unit ? format_bound(bound, key.dimension, key.unit) : number_text(bound);
+  const bool has_unit = key.kind() == Kind::quantity || key.kind() == Kind::quantity_list;
+  return has_unit ? format_bound(bound, key.unit.dimension, key.unit.name) : number_text(bound);
 }
 
 std::string enumerate(const std::vector<std::string> &words)
@@ -66,12 +66,22 @@ std::string_view Key::section() const
 
 std::string_view Key::name() const { return path.substr(path.find('.') + 1); }
 
+Kind Key::kind() const
+{
+  if (table)
+    return Kind::table;
+  if (!choices.empty())
+    return Kind::choice;
+  return field.kind() == Kind::number && *unit.name ? Kind::quantity : field.kind();
+}
+
 bool Key::reads_as(const Key &other) const
 {
   const auto same = [](const char *a, const char *b) { return std::string_view(a) == b; };
-  return path == other.path && kind == other.kind && dimension == other.dimension && same(unit, other.unit) &&
-         presence == other.presence && same(value, other.value) && range == other.range && same(reason, other.reason) &&
-         choices.data() == other.choices.data() && group == other.group && same(text, other.text);
+  return path == other.path && kind() == other.kind() && unit.dimension == other.unit.dimension &&
+         same(unit.name, other.unit.name) && presence == other.presence && same(value, other.value) &&
+         range == other.range && same(reason, other.reason) && choices.data() == other.choices.data() &&
+         group == other.group && same(text, other.text);
 }
 
 const Key *SceneSchema::find_key(std::string_view path) const
@@ -167,7 +177,7 @@ std::string heading(const Section &section)
 
 std::string file_text(const Key &key, std::string_view value)
 {
-  const bool words = key.kind == Kind::quantity || key.kind == Kind::choice || key.kind == Kind::text;
+  const bool words = key.kind() == Kind::quantity || key.kind() == Kind::choice || key.kind() == Kind::text;
   return words ? toml_text(value) : std::string(value);
 }
 
@@ -175,7 +185,7 @@ std::string example(const Key &key) { return file_text(key, key.value); }
 
 std::string range_text(const Key &key)
 {
-  if (key.kind == Kind::choice)
+  if (key.kind() == Kind::choice)
     return choices_text(key);
   const Range &range = key.range;
   const bool below = std::isfinite(range.low), above = std::isfinite(range.high);
@@ -186,7 +196,7 @@ std::string range_text(const Key &key)
     return fmt::format("{} {}", range.low_excluded ? ">" : ">=", bound_text(key, range.low));
   if (above)
     return fmt::format("{} {}", range.high_excluded ? "<" : "<=", bound_text(key, range.high));
-  return key.kind == Kind::integer ? ">= 0" : "";
+  return key.kind() == Kind::integer ? ">= 0" : "";
 }
 
 std::string choices_text(const Key &key)

@@ -21,7 +21,7 @@ struct Reading
   const toml::node &node;
 
   void operator()(std::monostate) const {}
-  void operator()(double *value) const { *value = key.kind == Kind::quantity ? quantity(node) : number(node); }
+  void operator()(double *value) const { *value = key.kind() == Kind::quantity ? quantity(node) : number(node); }
   void operator()(std::optional<double> *value) const { (*this)(&value->emplace()); }
   void operator()(std::uint64_t *value) const { *value = integer(); }
   void operator()(unsigned *value) const { *value = static_cast<unsigned>(integer()); } // the range keeps it small
@@ -29,16 +29,16 @@ struct Reading
 
   void operator()(bool *value) const
   {
-    if (key.kind != Kind::choice && !node.is_boolean())
+    if (key.kind() != Kind::choice && !node.is_boolean())
       refuse("must be true or false, without quotes");
-    *value = key.kind == Kind::choice ? choice() == 1 : node.as_boolean()->get();
+    *value = key.kind() == Kind::choice ? choice() == 1 : node.as_boolean()->get();
   }
 
   void operator()(std::string *value) const
   {
-    if (key.kind != Kind::choice && !node.is_string())
+    if (key.kind() != Kind::choice && !node.is_string())
       refuse("must be text in quotes");
-    *value = key.kind == Kind::choice ? key.choices[choice()] : node.as_string()->get();
+    *value = key.kind() == Kind::choice ? key.choices[choice()] : node.as_string()->get();
   }
 
   void operator()(std::vector<double> *values) const
@@ -46,7 +46,7 @@ struct Reading
     const auto *array = node.as_array();
     if (!array)
       refuse(fmt::format("must be a list [...] whose entries are {} with its unit ({}), in quotes",
-                         dimension_name(key.dimension), unit_names(key.dimension)));
+                         dimension_name(key.unit.dimension), unit_names(key.unit.dimension)));
     values->clear();
     for (const toml::node &element : *array)
       values->push_back(quantity(element));
@@ -89,7 +89,7 @@ struct Reading
       refuse(fmt::format("must be between {:g} and {:g} in size{}, because products of larger or smaller numbers "
                          "overflow or vanish",
                          smallest, largest,
-                         key.kind == Kind::quantity || key.kind == Kind::quantity_list ? " (in SI units)" : ""));
+                         key.kind() == Kind::quantity || key.kind() == Kind::quantity_list ? " (in SI units)" : ""));
     if (key.range.contains(scale))
       return;
     const std::string range = range_text(key);
@@ -101,12 +101,12 @@ struct Reading
   {
     const auto *text = node.as_string();
     if (!text)
-      refuse(fmt::format("must be {} with its unit ({}), in quotes", dimension_name(key.dimension),
-                         unit_names(key.dimension)));
+      refuse(fmt::format("must be {} with its unit ({}), in quotes", dimension_name(key.unit.dimension),
+                         unit_names(key.unit.dimension)));
     try
       {
-        const Quantity quantity = parse_quantity(text->get(), key.dimension);
-        if (key.kind != Kind::size_curve)
+        const Quantity quantity = parse_quantity(text->get(), key.unit.dimension);
+        if (key.kind() != Kind::size_curve)
           check_range(quantity.scale);
         return quantity.value;
       }

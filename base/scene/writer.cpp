@@ -16,8 +16,8 @@ std::string real_text(double value) { return value == 0 && std::signbit(value) ?
 
 std::string number_in_file(const Key &key, double value)
 {
-  return key.kind == Kind::quantity ? file_text(key, format_quantity(value, key.dimension, key.unit))
-                                    : real_text(value);
+  return key.kind() == Kind::quantity ? file_text(key, format_quantity(value, key.unit.dimension, key.unit.name))
+                                      : real_text(value);
 }
 
 /// The value of a field as it stands in the file; "" if it is not set.
@@ -44,11 +44,11 @@ struct WriteValue
   std::string operator()(const unsigned *value) const { return count(*value); }
   std::string operator()(const bool *value) const
   {
-    return key.kind == Kind::choice ? file_text(key, key.choices[*value ? 1 : 0]) : fmt::format("{}", *value);
+    return key.kind() == Kind::choice ? file_text(key, key.choices[*value ? 1 : 0]) : fmt::format("{}", *value);
   }
   std::string operator()(const std::string *value) const
   {
-    const bool unset = value->empty() && (key.presence == Presence::optional || key.kind == Kind::choice);
+    const bool unset = value->empty() && (key.presence == Presence::optional || key.kind() == Kind::choice);
     return unset ? "" : file_text(key, *value);
   }
   std::string operator()(const EnumField &value) const { return file_text(key, key.choices[value.get()]); }
@@ -56,7 +56,8 @@ struct WriteValue
   {
     std::string text;
     for (const double value : *values)
-      text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", format_quantity(value, key.dimension, key.unit));
+      text +=
+          fmt::format("{}\"{}\"", text.empty() ? "" : ", ", format_quantity(value, key.unit.dimension, key.unit.name));
     return values->empty() && key.presence == Presence::optional ? "" : "[" + text + "]";
   }
   std::string operator()(const PercentPair &pair) const
@@ -68,7 +69,7 @@ struct WriteValue
     std::string rows;
     for (const auto &[diameter, percent] : *curve)
       rows += fmt::format("{}[\"{}\", {}]", rows.empty() ? "" : ", ",
-                          format_quantity(diameter, key.dimension, key.unit), real_text(percent));
+                          format_quantity(diameter, key.unit.dimension, key.unit.name), real_text(percent));
     return rows.empty() ? "" : "[" + rows + "]";
   }
 };
@@ -77,9 +78,9 @@ struct WriteValue
 struct Source
 {
   const SceneSchema &schema;
-  void *scene, *item = nullptr;
+  StructRef scene, place; ///< the latter has the fields: the entry of an array of tables, else the scene
 
-  std::string value(const Key &key) const { return std::visit(WriteValue{key}, key.field(scene, item)); }
+  std::string value(const Key &key) const { return std::visit(WriteValue{key}, key.field(place)); }
 
   /// Another key of the group, one without default, is set: this one gave way to it.
   bool gave_way(const Key &key) const
@@ -98,7 +99,7 @@ struct Source
     const Key *table = schema.find_key(key.path.substr(0, key.path.rfind('.')));
     if (!table)
       return false;
-    const Field field = table->field(scene, item);
+    const Field field = table->field(place);
     const bool *const *present = std::get_if<bool *>(&field);
     return present && !**present;
   }
@@ -107,10 +108,10 @@ struct Source
   std::string keys(const Section *section) const
   {
     std::string text;
-    const std::size_t kind = section ? kind_number(schema, *section, scene, item) : 0;
+    const std::size_t kind = section ? kind_number(schema, *section, place) : 0;
     for (const Key &key : schema.keys)
       {
-        if (key.section() != (section ? section->name : "") || key.kind == Kind::table || !takes_key(key, kind) ||
+        if (key.section() != (section ? section->name : "") || key.kind() == Kind::table || !takes_key(key, kind) ||
             gave_way(key) || switched_off(key) || (schema.is_implied && schema.is_implied(key, scene)))
           continue;
         if (const std::string in_file = value(key); !in_file.empty())
@@ -136,7 +137,7 @@ std::string comment(std::string_view text)
 /// Sentence, allowed values and the line of the key itself.
 std::string default_entry(const Key &key)
 {
-  if (key.kind == Kind::table) // its keys follow
+  if (key.kind() == Kind::table) // its keys follow
     return comment(fmt::format("{}: {}", key.name(), key.text));
   std::string text = key.text;
   if (const std::string allowed = range_text(key); !allowed.empty())
@@ -218,17 +219,16 @@ std::string default_section(const SceneSchema &schema, const Section &section)
 }
 } // namespace
 
-std::string write_scene(const SceneSchema &schema, const void *scene)
+std::string write_scene(const SceneSchema &schema, StructRef scene)
 {
-  void *place = const_cast<void *>(scene); // fields are reached through one accessor, which could also write
-  std::string text = Source{schema, place}.keys(nullptr);
+  std::string text = Source{schema, scene, scene}.keys(nullptr);
   for (const Section &section : schema.sections)
     {
       if (!section.items)
-        text += "\n" + heading(section) + "\n" + Source{schema, place}.keys(&section);
+        text += "\n" + heading(section) + "\n" + Source{schema, scene, scene}.keys(&section);
       else
-        for (std::size_t i = 0; i < section.items.count(place); ++i)
-          text += "\n" + heading(section) + "\n" + Source{schema, place, section.items.at(place, i)}.keys(&section);
+        for (std::size_t i = 0; i < section.items.count(scene); ++i)
+          text += "\n" + heading(section) + "\n" + Source{schema, scene, section.items.at(scene, i)}.keys(&section);
     }
   return text;
 }

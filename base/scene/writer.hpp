@@ -9,7 +9,7 @@ namespace isostat
 /// displaced by another key of their group; and 0 or no text where a key without default is not set.
 /// @param scene  of the type that the schema was made for
 /// tested: tests/dem/scene/scene_test.cpp, tests/apps/deposit/scene_test.cpp
-std::string write_scene(const SceneSchema &schema, const void *scene);
+std::string write_scene(const SceneSchema &schema, StructRef scene);
 
 /// A commented scene file with all defaults, units, ranges and one sentence per key (--print-defaults).
 std::string write_defaults(const SceneSchema &schema);

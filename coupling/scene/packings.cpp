@@ -15,61 +15,56 @@ constexpr const char *in_situ_choices[] = {"all-stresses", "no-lateral-strain"};
 
 // clang-format off
 constexpr Key packings[] = {
-  {.path = "library", .kind = Kind::text, .presence = Presence::optional, .value = "library.h5",
-   .text = "Specimens, made by `isostat library`; counts from the folder of the scene file or else from the "
-           "working directory. Needed by soil of grains.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.library; }},
-  {.path = "cache", .kind = Kind::text, .presence = Presence::optional, .value = "results/in_situ.h5",
-   .text = "File in which packings brought to their stress in situ are kept for the next start; counts from the working "
-           "directory. Left out: none are kept.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.cache; }},
-  {.path = "in_situ", .kind = Kind::choice, .value = "all-stresses", .choices = in_situ_choices,
+  {.path = "library", .field = member<&RveMaterialSettings::library>, .presence = Presence::optional,
+   .value = "library.h5",
+   .text = "Specimens, made by `isostat library`; counts from the folder of the scene file or else from the working "
+           "directory. Needed by soil of grains."},
+  {.path = "cache", .field = member<&RveMaterialSettings::cache>, .presence = Presence::optional,
+   .value = "results/in_situ.h5",
+   .text = "File in which packings brought to their stress in situ are kept for the next start; counts from the "
+           "working directory. Left out: none are kept."},
+  {.path = "in_situ", .field = member<&RveMaterialSettings::in_situ, &InSituSettings::path>, .value = "all-stresses",
+   .choices = in_situ_choices,
    .text = "Packings start at the vertical and horizontal stress that the soil has in situ (in a column its weight and "
-           "`layer.k0` say it), or, without lateral strain, at the horizontal stress that they give themselves.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.in_situ.path; }},
-  {.path = "realisations", .kind = Kind::integer, .value = "1", .range = {1, 1000},
+           "`layer.k0` say it), or, without lateral strain, at the horizontal stress that they give themselves."},
+  {.path = "realisations", .field = member<&RveMaterialSettings::realisations>, .value = "1", .range = {1, 1000},
    .reason = "because a point has at least one packing, and a thousand run a thousand times as long",
-   .text = "Packings of a Gauss point, of as many seeds; its stress is their mean.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.realisations; }},
-  {.path = "min_steps", .kind = Kind::integer, .value = "20", .range = {1, 1e6}, .reason = one_or_more,
-   .text = "Time steps of the grains in each increment of the elements, at least: small increments would be over in one or "
-           "two, before the grains find their places.",
-   .field = [](RveMaterialSettings &s) -> Field { return &s.min_steps; }},
+   .text = "Packings of a Gauss point, of as many seeds; its stress is their mean."},
+  {.path = "min_steps", .field = member<&RveMaterialSettings::min_steps>, .value = "20", .range = {1, 1e6},
+   .reason = one_or_more,
+   .text = "Time steps of the grains in each increment of the elements, at least: small increments would be over in "
+           "one or two, before the grains find their places."},
 };
 
 constexpr Key specimens[] = {
-  {.path = "relative_density", .presence = Presence::optional, .value = "0.5", .range = {-1, 2},
+  {.path = "relative_density", .field = member<&SpecimenRequest::relative_density>, .presence = Presence::optional,
+   .value = "0.5", .range = {-1, 2},
    .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
-   .text = "D_r of the packings: the nearest of the library within 0.05; left out: the library has one density only.",
-   .field = [](SpecimenRequest &r) -> Field { return &r.relative_density; }},
-  {.path = "realisation", .kind = Kind::integer, .value = "0",
-   .text = "Which seed of the library, counted from 0; with several realisations the first of them.",
-   .field = [](SpecimenRequest &r) -> Field { return &r.realisation; }},
+   .text = "D_r of the packings: the nearest of the library within 0.05; left out: the library has one density only."},
+  {.path = "realisation", .field = member<&SpecimenRequest::realisation>, .value = "0",
+   .text = "Which seed of the library, counted from 0; with several realisations the first of them."},
 };
 
 constexpr Key lots[] = {
-  {.path = "mixed_realisations", .kind = Kind::integer, .value = "1", .range = counts, .reason = one_or_more,
-   .text = "Each Gauss point has one of this many seeds, from `realisation` on, at random (with several `realisations` as "
-           "many that differ); 1: all points have the same, brought to the stress of their depth. "
-           "1, or at least `realisations`.",
-   .field = [](SpecimenRequest &r) -> Field { return &r.mixed; }},
-  {.path = "lot", .kind = Kind::integer, .value = "0",
-   .text = "Another number draws other seeds of the `mixed_realisations`. "
-           "Only with `mixed_realisations` above 1, as `lot_length`.",
-   .field = [](SpecimenRequest &r) -> Field { return &r.lot; }},
-  {.path = "lot_length", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "m", .value = "0 m",
+  {.path = "mixed_realisations", .field = member<&SpecimenRequest::mixed>, .value = "1", .range = counts,
+   .reason = one_or_more,
+   .text = "Each Gauss point has one of this many seeds, from `realisation` on, at random (with several `realisations` "
+           "as many that differ); 1: all points have the same, brought to the stress of their depth. 1, or at least "
+           "`realisations`."},
+  {.path = "lot", .field = member<&SpecimenRequest::lot>, .value = "0",
+   .text = "Another number draws other seeds of the `mixed_realisations`. Only with `mixed_realisations` above 1, as "
+           "`lot_length`."},
+  {.path = "lot_length", .field = member<&SpecimenRequest::lot_length>, .unit = unit::m, .value = "0 m",
    .range = not_negative,
-   .text = "Points of the same block, so long and as wide, counted from the base, draw the same seeds: the soil varies over a "
-           "length of its own, whatever the mesh; 0 m: each point draws for itself.",
-   .field = [](SpecimenRequest &r) -> Field { return &r.lot_length; }},
+   .text = "Points of the same block, so long and as wide, counted from the base, draw the same seeds: the soil varies "
+           "over a length of its own, whatever the mesh; 0 m: each point draws for itself."},
 };
 // clang-format on
 } // namespace
 
 SceneFragment<RveMaterialSettings> packing_keys()
 {
-  const auto motion = [](RveMaterialSettings &s) -> MotionSpec & { return s.motion; };
-  static const KeyTable table{packings, splice("", controlled_motion_keys(), 0, motion)};
+  static const KeyTable table{packings, splice<&RveMaterialSettings::motion>("", controlled_motion_keys())};
   return {table.keys()};
 }
 

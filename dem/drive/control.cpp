@@ -16,22 +16,19 @@ constexpr const char *answers[] = {"report", "error"};
 
 // clang-format off
 constexpr Key keys[] = {
-  {.path = "stress_tolerance", .value = "0.01", .range = ranges::to_one,
-   .reason = "because it is relative to the target",
-   .text = "A stress that a stage keeps is off its target by more than this: |stress - target| over the target, or over 5 % of p0' "
-           "where the target is lower.",
-   .field = [](ControlSpec &c) -> Field { return &c.stress_tolerance; }},
-  {.path = "indicator_tolerance", .value = "0.2", .range = ranges::positive,
-   .text = "The quasi-static indicator is too large above this. It is looked at until the specimen liquefies.",
-   .field = [](ControlSpec &c) -> Field { return &c.indicator_tolerance; }},
-  {.path = "strain_share", .value = "0.05", .range = {0, 1, false, true},
+  {.path = "stress_tolerance", .field = member<&ControlSpec::stress_tolerance>, .value = "0.01",
+   .range = ranges::to_one, .reason = "because it is relative to the target",
+   .text = "A stress that a stage keeps is off its target by more than this: |stress - target| over the target, or "
+           "over 5 % of p0' where the target is lower."},
+  {.path = "indicator_tolerance", .field = member<&ControlSpec::indicator_tolerance>, .value = "0.2",
+   .range = ranges::positive,
+   .text = "The quasi-static indicator is too large above this. It is looked at until the specimen liquefies."},
+  {.path = "strain_share", .field = member<&ControlSpec::strain_share>, .value = "0.05", .range = {0, 1, false, true},
    .reason = "because it is a share of the strain of a stage",
-   .text = "Control is lost where a stress or the indicator is outside of its tolerance for more than this share of the "
-           "strain that the stage drives.",
-   .field = [](ControlSpec &c) -> Field { return &c.strain_share; }},
-  {.path = "on_loss", .kind = Kind::choice, .value = "report", .choices = answers,
-   .text = "Lost control is told in the summary and on the terminal, or ends the run as an error (exit code 1).",
-   .field = [](ControlSpec &c) -> Field { return &c.stop; }},
+   .text = "Control is lost where a stress or the indicator is outside of its tolerance for more than this share of "
+           "the strain that the stage drives."},
+  {.path = "on_loss", .field = member<&ControlSpec::stop>, .value = "report", .choices = answers,
+   .text = "Lost control is told in the summary and on the terminal, or ends the run as an error (exit code 1)."},
 };
 // clang-format on
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/motion_spec.hpp"
 
-#include "base/error.hpp"
+#include "base/scene/numbers.hpp"
 #include "base/scene/ranges.hpp"
 
 #include <fmt/format.h>
@@ -14,85 +14,83 @@ namespace
 // two keys that stand in both tables, with the defaults and words of each
 constexpr Key damping(const char *value, const char *text)
 {
-  return {.path = "damping", .value = value, .range = {0, 1, false, true},
-          .reason = "because at 1 no grain would get moving", .text = text,
-          .field = [](MotionSpec &m) -> Field { return &m.damping; }};
+  return {.path = "damping", .field = member<&MotionSpec::damping>, .value = value, .range = {0, 1, false, true},
+          .reason = "because at 1 no grain would get moving", .text = text};
 }
 
 constexpr Key inertial_number(Presence presence, const char *value, const char *text)
 {
-  return {.path = "inertial_number", .presence = presence, .value = value, .range = ranges::fraction,
-          .reason = "because at 1 inertia is as large as the stress", .group = "rate", .text = text,
-          .field = [](MotionSpec &m) -> Field { return &m.inertial_number; }};
+  return {.path = "inertial_number", .field = member<&MotionSpec::inertial_number>, .presence = presence,
+          .value = value, .range = ranges::fraction, .reason = "because at 1 inertia is as large as the stress",
+          .group = "rate", .text = text};
 }
 
 constexpr Key shared[] = {
-  {.path = "contact_damping", .value = "0.05", .range = {0, 1, false, true},
+  {.path = "contact_damping", .field = member<&MotionSpec::contact_damping>, .value = "0.05",
+   .range = {0, 1, false, true},
    .reason = "because it is a share of critical damping; a large one needs a small time step",
    .text = "Dashpots along the normals of contacts, as a share of critical damping: two grains that collide part with "
-           "0.86 of their speed at 0.05 (Hertz-Mindlin law: 0.85). 0: none.",
-   .field = [](MotionSpec &m) -> Field { return &m.contact_damping; }},
-  {.path = "free_grain_damping", .value = "0.1", .range = {0, 1}, .reason = "because it is a share",
+           "0.86 of their speed at 0.05 (Hertz-Mindlin law: 0.85). 0: none."},
+  {.path = "free_grain_damping", .field = member<&MotionSpec::free_grain_damping>, .value = "0.1", .range = {0, 1},
+   .reason = "because it is a share",
    .text = "Share of its velocity that a grain on which nothing acts loses in each step; 0: it flies on until it hits "
-           "another one, and knocks at the packing as long as the test lasts.",
-   .field = [](MotionSpec &m) -> Field { return &m.free_grain_damping; }},
+           "another one, and knocks at the packing as long as the test lasts."},
 };
 
 constexpr Key chosen[] = {
-  damping("0.1", "Local (non-viscous) damping coefficient. It brings whole packings to rest, and holds back what gives way as "
-          "a whole."),
-  inertial_number(Presence::optional, "1e-4", "Inertial number I at the mean effective stress p0' with which shearing begins. The axial strain rate (in "
-                  "simple shear that of gamma_xy) is at most I sqrt(p0'/density)/d50. Left out: 7e-4 in cyclic tests, 4e-5 in "
-                  "those that go one way, whose path depends more on the rate."),
-  {.path = "load_per_wave", .value = "0.1", .range = {0, 1},
+  damping("0.1", "Local (non-viscous) damping coefficient. It brings whole packings to rest, and holds back what "
+                 "gives way as a whole."),
+  inertial_number(Presence::optional, "1e-4",
+                  "Inertial number I at the mean effective stress p0' with which shearing begins. The axial strain "
+                  "rate (in simple shear that of gamma_xy) is at most I sqrt(p0'/density)/d50. Left out: 7e-4 in "
+                  "cyclic tests, 4e-5 in those that go one way, whose path depends more on the rate."),
+  {.path = "load_per_wave", .field = member<&MotionSpec::load_per_wave>, .value = "0.1", .range = {0, 1},
    .reason = "because it is a share of p0'; a stress that changes faster is not uniform in the packing",
-   .text = "The load, q or tau, changes at most by this share of p0' in the nominal time of a wave through the packing, "
-           "L sqrt(density/E), E the modulus of contacts under p0' (young of the linear law): the strain rate is lowered where the packing is stiff, the larger the packing the "
-           "more, but not below a hundredth. 0: never lowered. Not used with a fixed strain_rate.",
-   .field = [](MotionSpec &m) -> Field { return &m.load_per_wave; }},
-  {.path = "carry_grains", .kind = Kind::boolean, .value = "true",
+   .text = "The load, q or tau, changes at most by this share of p0' in the nominal time of a wave through the "
+           "packing, L sqrt(density/E), E the modulus of contacts under p0' (young of the linear law): the strain rate "
+           "is lowered where the packing is stiff, the larger the packing the more, but not below a hundredth. 0: "
+           "never lowered. Not used with a fixed strain_rate."},
+  {.path = "carry_grains", .field = member<&MotionSpec::carry_grains>, .value = "true",
    .text = "In a box: grains share the homogeneous motion of the walls, as those of a periodic cell do, so that walls "
            "which start or turn round send no waves; false: walls push. Walls that only follow a pressure (compress, "
-           "rebalance) always push.",
-   .field = [](MotionSpec &m) -> Field { return &m.carry_grains; }},
-  {.path = "strain_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+           "rebalance) always push."},
+  {.path = "strain_rate", .field = member<&MotionSpec::strain_rate>, .unit = unit::per_s,
    .presence = Presence::optional, .value = "0.5 1/s", .range = ranges::positive, .group = "rate",
-   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the inertial number and load_per_wave.",
-   .field = [](MotionSpec &m) -> Field { return &m.strain_rate; }},
-  {.path = "time_step_safety", .value = "0.8", .range = ranges::to_one,
-   .reason = "because beyond the critical step the motion is unstable", .text = "Time step over the critical one.",
-   .field = [](MotionSpec &m) -> Field { return &m.time_step_safety; }},
-  {.path = "time_step", .kind = Kind::quantity, .dimension = Dimension::time, .unit = "ns",
-   .presence = Presence::optional, .value = "50 ns", .range = ranges::positive,
-   .text = "Fixed time step, checked against the critical one; left out: it follows the stiffness of the contacts.",
-   .field = [](MotionSpec &m) -> Field { return &m.time_step; }},
+   .text = "Fixed axial strain rate, in simple shear that of gamma_xy, instead of the inertial number and "
+           "load_per_wave."},
+  {.path = "time_step_safety", .field = member<&MotionSpec::time_step_safety>, .value = "0.8", .range = ranges::to_one,
+   .reason = "because beyond the critical step the motion is unstable", .text = "Time step over the critical one."},
+  {.path = "time_step", .field = member<&MotionSpec::time_step>, .unit = unit::ns, .presence = Presence::optional,
+   .value = "50 ns", .range = ranges::positive,
+   .text = "Fixed time step, checked against the critical one; left out: it follows the stiffness of the contacts."},
 };
 
 constexpr const char *drives[] = {"dynamic", "static"};
 constexpr Key statics[] = {
-  {.path = "drive", .kind = Kind::choice, .value = "dynamic", .choices = drives,
-   .text = "How stages that shear go on. dynamic: in time steps, at a rate. static: in increments of strain, each of which is "
-           "taken to balance; rates and dampings have no part in it. Preparation is dynamic; static needs a stage that shears.",
-   .field = [](StaticDrive &d) -> Field { return &d.on; }},
-  {.path = "increment", .value = "5e-5", .range = {0, 1e-3, true, false},
+  {.path = "drive", .field = member<&StaticDrive::on>, .value = "dynamic", .choices = drives,
+   .text = "How stages that shear go on. dynamic: in time steps, at a rate. static: in increments of strain, each of "
+           "which is taken to balance; rates and dampings have no part in it. Preparation is dynamic; static needs a "
+           "stage that shears."},
+  {.path = "increment", .field = member_of<StaticDrive, &StaticDrive::increment>, .value = "5e-5",
+   .range = {0, 1e-3, true, false},
    .reason = "because there is no other end to an increment, and contacts slide by more than their overlap in one of 1e-3",
-   .text = "static: driven strain of an increment; shorter ones end where the load turns.",
-   .field = [](StaticDrive &d) -> Field { return &d.increment; }},
-  {.path = "balance", .value = "0.01", .range = {1e-8, 0.1},
-   .reason = "because it is relative to the forces on the grain, which have round-off",
-   .text = "static: an increment ends when the sum of forces on each grain, and the sum of torques over its radius, are at most "
-           "this share of the largest contact force on it.",
-   .field = [](StaticDrive &d) -> Field { return &d.balance.tolerance; }},
-  {.path = "left_out", .value = "0.01", .range = {0, 1, false, true}, .reason = "because it is a share",
-   .text = "static: share of the grains with contacts, the worst, that need not be in balance.",
-   .field = [](StaticDrive &d) -> Field { return &d.balance.left_out; }},
+   .text = "static: driven strain of an increment; shorter ones end where the load turns."},
+  {.path = "balance", .field = member_of<StaticDrive, &StaticDrive::balance, &BalanceSpec::tolerance>, .value = "0.01",
+   .range = {1e-8, 0.1}, .reason = "because it is relative to the forces on the grain, which have round-off",
+   .text = "static: an increment ends when the sum of forces on each grain, and the sum of torques over its radius, "
+           "are at most this share of the largest contact force on it."},
+  {.path = "left_out", .field = member_of<StaticDrive, &StaticDrive::balance, &BalanceSpec::left_out>, .value = "0.01",
+   .range = {0, 1, false, true}, .reason = "because it is a share",
+   .text = "static: share of the grains with contacts, the worst, that need not be in balance."},
 };
 
 constexpr Key controlled[] = {
-  damping("0.2", "Local (non-viscous) damping coefficient. With less than 0.2 packings whose strain answers their stress hardly "
-          "come to rest."),
-  inertial_number(Presence::standard, "1e-4", "Inertial number I at the mean effective stress p0' that a packing has in situ. Increments that would strain it "
-                  "faster than I sqrt(p0'/density)/d50 take more time steps of the grains than min_steps."),
+  damping("0.2", "Local (non-viscous) damping coefficient. With less than 0.2 packings whose strain answers their "
+                 "stress hardly come to rest."),
+  inertial_number(Presence::standard, "1e-4",
+                  "Inertial number I at the mean effective stress p0' that a packing has in situ. Increments that "
+                  "would strain it faster than I sqrt(p0'/density)/d50 take more time steps of the grains than "
+                  "min_steps."),
 };
 // clang-format on
 } // namespace
@@ -111,21 +109,7 @@ SceneFragment<MotionSpec> motion_keys()
 
 SceneFragment<StaticDrive> static_drive_keys() { return {statics}; }
 
-void check(const MotionSpec &motion)
-{
-  MotionSpec values = motion;
-  for (const Key &key : motion_keys().keys)
-    {
-      const Field field = key.field(&values, nullptr);
-      std::optional<double> value;
-      if (auto *const *number = std::get_if<double *>(&field))
-        value = **number;
-      else if (auto *const *given = std::get_if<std::optional<double> *>(&field))
-        value = **given;
-      if (value && !key.range.contains(*value))
-        throw InputError(fmt::format("{} = {:g}: must be {} {}.", key.path, *value, range_text(key), key.reason));
-    }
-}
+void check(const MotionSpec &motion) { check_numbers(motion_keys().keys, motion, ""); }
 
 void set_damping(const MotionSpec &motion, StepSettings &settings)
 {

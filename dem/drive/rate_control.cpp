@@ -20,28 +20,23 @@ void begin_window(Loading &loading, double load, double slope)
 }
 } // namespace
 
-StageRate rate_in_force(const MotionSpec &motion, const StageRate &stage)
+double strain_rate(const MotionSpec &motion, const Assembly &assembly, double p0)
 {
-  return {stage.fixed ? stage.fixed : motion.strain_rate, motion.inertial_number.value_or(stage.inertial_number)};
-}
-
-double strain_rate(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0)
-{
-  const StageRate rate = rate_in_force(motion, stage);
-  if (rate.fixed)
-    return *rate.fixed;
+  if (motion.strain_rate)
+    return *motion.strain_rate;
   if (!(p0 > 0))
     throw RunFailure(
         fmt::format("the specimen is to be sheared, but carries p' = {:.3g} Pa, and the rate of an inertial "
                     "number goes with its root. Consolidate it first, or give motion.strain_rate.",
                     p0));
-  return rate.inertial_number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
+  const double inertial_number = motion.inertial_number.value_or(controlled_inertial_number);
+  return inertial_number * std::sqrt(p0 / assembly.packing().density) / assembly.d50();
 }
 
-void set_bounds(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0, Pace &pace)
+void set_bounds(const MotionSpec &motion, const Assembly &assembly, double p0, Pace &pace)
 {
-  pace.rate = strain_rate(motion, stage, assembly, p0);
-  pace.load_rate = rate_in_force(motion, stage).fixed ? 0 : motion.load_per_wave * p0 / wave_time(assembly, p0);
+  pace.rate = strain_rate(motion, assembly, p0);
+  pace.load_rate = motion.strain_rate ? 0 : motion.load_per_wave * p0 / wave_time(assembly, p0);
 }
 
 double bounded_rate(const Pace &pace, const Loading &loading)

@@ -6,29 +6,18 @@
 
 namespace isostat
 {
-/// What a stage says of its rate; by default what holds for a packing without stages, a representative volume element.
-struct StageRate
-{
-  std::optional<double> fixed = {};                    ///< strain rate, 1/s; before that of the motion
-  double inertial_number = controlled_inertial_number; ///< where the motion names none [-]
-};
-
-/// What holds where motion and stage both may say it: the fixed rate of the stage, else of the motion; the inertial
-/// number of the motion, else of the stage, of no effect beside a fixed rate.
-StageRate rate_in_force(const MotionSpec &motion, const StageRate &stage);
-
-/// Strain rate in force, 1/s: the fixed one, else that of the inertial number,
-/// I sqrt(p0'/rho)/d50. It stays the same while p' changes: what error that leaves, also in the liquefied state, is
-/// measured in docs/results/free_grains.md.
+/// Strain rate, 1/s: the fixed one, else that of the inertial number, I sqrt(p0'/rho)/d50. It stays the same while p'
+/// changes: what error that leaves, also in the liquefied state, is measured in docs/results/free_grains.md.
+/// @param motion  as it is in force in a stage (ShearStage::motion_in_force)
 /// @param p0  mean effective stress when shearing began, Pa
 /// @throws RunFailure  the rate is that of the inertial number and p0 <= 0
 /// tested: tests/dem/drive/rate_control_test.cpp
-double strain_rate(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0);
+double strain_rate(const MotionSpec &motion, const Assembly &assembly, double p0);
 
 /// Sets both bounds on the rate: pace.rate = strain_rate(), and pace.load_rate = load_per_wave p0' / wave_time, so that
 /// stress has time to spread through the packing; none with a fixed rate.
 /// tested: tests/dem/drive/rate_control_test.cpp
-void set_bounds(const MotionSpec &motion, const StageRate &stage, const Assembly &assembly, double p0, Pace &pace);
+void set_bounds(const MotionSpec &motion, const Assembly &assembly, double p0, Pace &pace);
 
 /// What inertia adds to a quasi-static answer, relative to the stress at hand; recorded every 50 steps:
 ///     eta = max( |sigma_wall - sigma_contact|, U p', 10 I p_r ) / p_r,     p_r = max(p', 0.05 p0'),

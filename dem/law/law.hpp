@@ -66,11 +66,13 @@ struct ContactLaw
   double young = 1e10; ///< E, Pa: all stiffness is in proportion to it, and forces are at most of the order E u R
   double friction = 0; ///< mu = tan(phi) between grains [-]; 0: no tangential force, no torque. Walls have none
 
+  using KeyRoot = ContactLaw; ///< where keys look for the members of a law (base/scene/field.hpp)
+
   virtual ~ContactLaw() = default;
   virtual const char *name() const = 0; ///< as `contact.law` in scenes
   virtual std::unique_ptr<ContactLaw> clone() const = 0;
-  /// The parameters as keys of the section [contact], "young"; fields are doubles and bools, found by law_field
-  /// (parameters.hpp). Names in files and bytes, keys of caches and equality of laws follow from this table.
+  /// The parameters as keys of the section [contact], "young"; fields are doubles and bools,
+  /// member<&MyLaw::parameter>. Names in files and bytes, keys of caches and equality of laws follow from this table.
   virtual std::span<const Key> keys() const = 0;
 
   /// What the present parameters need to remember of a contact.

@@ -9,19 +9,7 @@ namespace isostat
 namespace detail
 {
 std::string parameter_name(const Key &key, bool is_switch);
-
-template <auto member>
-struct LawField;
-template <typename Concrete, typename Number, Number Concrete::*member>
-struct LawField<member>
-{
-  Field operator()(ContactLaw &law) const { return &(static_cast<Concrete &>(law).*member); }
-};
-} // namespace detail
-
-/// How the key of a parameter finds it: .field = law_field<&MyLaw::parameter>.
-template <auto member>
-inline constexpr FieldAccess law_field{detail::LawField<member>{}};
+}
 
 /// Calls visit(name, double &) for every number and then visit(name, bool &) for every switch of a law: "rolling_limit"
 /// is the key rolling.limit, "feature_rolling" the table rolling. "feature_friction" is no parameter but says whether
@@ -33,7 +21,7 @@ void for_each_parameter(ContactLaw &law, const Visit &visit)
   const auto each = [&]<typename Value>(Value, bool is_switch) {
     for (const Key &key : law.keys())
       {
-        const Field field = key.field(static_cast<void *>(&law), nullptr);
+        const Field field = key.field(law);
         if (Value *const *place = std::get_if<Value *>(&field))
           visit(detail::parameter_name(key, is_switch), **place);
       }

@@ -52,7 +52,8 @@ double change_of_forces(const Snapshot &s, const ContactLaw &before, const Conta
 
 std::string text_of(const Key &key, double value)
 {
-  return key.kind == Kind::quantity ? format_quantity(value, key.dimension, key.unit) : fmt::format("{:g}", value);
+  return key.kind() == Kind::quantity ? format_quantity(value, key.unit.dimension, key.unit.name)
+                                      : fmt::format("{:g}", value);
 }
 
 /// The parameters of the law to which the change of normal forces is due: "contact.young = 5 GPa (1 GPa)".
@@ -64,7 +65,7 @@ std::string stiffness_in_words(const Snapshot &state, const Law &law)
   for (const Key &key : law->keys())
     {
       Law own = state.law, scenes = law;
-      const auto place = [&key](Law &of) { return key.field(static_cast<void *>(of.operator->()), nullptr); };
+      const auto place = [&key](Law &of) { return key.field(*of.operator->()); };
       const Field to = place(own), from = place(scenes);
       if (!std::holds_alternative<double *>(to))
         continue;

@@ -72,7 +72,7 @@ Rve::Rve(const Snapshot &specimen, const RveSettings &settings)
   update_time_step(settings_.motion, true, drive_.steps, assembly_, drive_.pace);
   assembly_.compute_forces();
   drive_.p0 = std::max(mean_stress(), min_reference * assembly_.law()->young);
-  drive_.pace.rate = strain_rate(settings_.motion, {}, assembly_, drive_.p0);
+  drive_.pace.rate = strain_rate(settings_.motion, assembly_, drive_.p0);
   keep_safe();
 }
 

@@ -156,7 +156,7 @@ Rve Rve::unpack(std::span<const std::byte> packed, const RveSettings &settings)
   if (const std::string found = fault_of(start, state); !found.empty())
     bytes.fail(found);
   Rve rve(start, settings);
-  state.drive.pace.rate = strain_rate(settings.motion, {}, rve.assembly_, state.drive.p0);
+  state.drive.pace.rate = strain_rate(settings.motion, rve.assembly_, state.drive.p0);
   state.specimen = rve.specimen_;
   rve.restore(state);
   rve.cost_ = cost;

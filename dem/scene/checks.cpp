@@ -61,7 +61,7 @@ void check_contact(const SceneDocument &document, const Scene &scene)
 {
   for (const Key &key : scene.contact->keys())
     if (const std::string path = fmt::format("contact.{}", key.path);
-        key.kind == Kind::table && document.find(path) && !document.find("contact.friction"))
+        key.table && document.find(path) && !document.find("contact.friction"))
       document.refuse(path, "has no effect without friction. Give contact.friction, or 0 deg to say that it is meant.");
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
     if (const auto *set = as<Friction>(scene.stages[i]); set && set->friction > 0 && !(scene.contact->friction > 0))
@@ -156,7 +156,7 @@ void check_drive(const SceneDocument &document, const Scene &scene)
 
 void check_scene(const SceneDocument &document, Scene &scene)
 {
-  check_groups(document, &scene);
+  check_groups(document, scene);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_pressure(document, scene);

@@ -6,7 +6,6 @@
 #include "dem/scene/schema.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
 
 namespace isostat
@@ -25,7 +24,7 @@ void forget_default_limits(const SceneDocument &document, SpecimenSpec &specimen
 Scene checked_scene(const SceneDocument &document)
 {
   Scene scene;
-  fill_scene(document, &scene);
+  fill_scene(document, scene);
   for (const Key &key : scene_schema().keys)
     if ((key.section() == "grading" || key.section() == "specimen") && document.find(key.path))
       scene.written.paths.emplace_back(key.path);
@@ -78,11 +77,11 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
               key, "prescribes shear, which needs the periodic cell. Give domain = \"periodic-cell\" in [specimen].");
       }
   if (scene.output.folder.empty())
-    scene.output.folder = "results/" + std::filesystem::path(path).stem().string();
+    scene.output.folder = results_folder(path);
   return scene;
 }
 
-std::string to_toml(const Scene &scene) { return write_scene(scene_schema(), &scene); }
+std::string to_toml(const Scene &scene) { return write_scene(scene_schema(), scene); }
 
 std::string default_scene() { return write_defaults(scene_schema()); }
 

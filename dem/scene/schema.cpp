@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keys of a scene file. Those of the contact laws, of the motion and of each kind of stage stand beside their
-// structs and are spliced in. A new one of the others is an entry here and a field in dem/scene/scene.hpp. Rules that
+// structs and are spliced in. A new one of the others is an entry here and a member in dem/scene/scene.hpp. Rules that
 // bind several keys are in dem/scene/checks.cpp.
 #include "dem/scene/schema.hpp"
 
@@ -58,138 +58,113 @@ using ranges::because_stresses, ranges::because_tan, ranges::fraction, ranges::p
 constexpr const char *because_damping = "because at 1 no grain would get moving";
 
 // clang-format off
-constexpr Key first_keys[] = {
-  {.path = "title", .kind = Kind::text, .text = "What the scene shows; heads tables and figures.",
-   .field = [](Scene &s) -> Field { return &s.title; }},
+constexpr Key title_key[] = {
+  {.path = "title", .field = member<&Scene::title>, .text = "What the scene shows; heads tables and figures."},
+};
 
-  {.path = "grading.curve", .kind = Kind::choice, .value = "karlsruhe-fine-sand", .choices = curve_choices,
-   .group = "size_curve", .text = "Grading curve by name; excludes `table`.",
-   .field = [](Scene &s) -> Field { return &s.grading.curve; }},
-  {.path = "grading.table", .kind = Kind::size_curve, .dimension = Dimension::length, .unit = "mm",
-   .presence = Presence::optional, .value = "[[\"0.1 mm\", 0], [\"0.2 mm\", 100]]", .group = "size_curve",
+constexpr Key grading_keys[] = {
+  {.path = "curve", .field = member<&GradingSpec::curve>, .value = "karlsruhe-fine-sand", .choices = curve_choices,
+   .group = "size_curve", .text = "Grading curve by name; excludes `table`."},
+  {.path = "table", .field = member<&GradingSpec::table>, .unit = unit::mm, .presence = Presence::optional,
+   .value = "[[\"0.1 mm\", 0], [\"0.2 mm\", 100]]", .group = "size_curve",
    .text = "Grading curve as rows of diameter and percent finer by mass, both rising, the last at 100; excludes "
-           "`curve`.",
-   .field = [](Scene &s) -> Field { return &s.grading.table; }},
-  {.path = "grading.truncate", .kind = Kind::percent_pair, .value = "[0, 100]", .range = {0, 100},
-   .reason = "because these are percentages finer",
-   .text = "Percentages finer between which the curve is kept; the tails beyond are cut and the rest is rescaled.",
-   .field = [](Scene &s) -> Field
-   { return PercentPair{&s.grading.finest_percent, &s.grading.coarsest_percent}; }},
-  {.path = "grading.grains", .kind = Kind::integer, .value = "10000", .range = {2, 1e8},
-   .reason = "because one grain makes no packing and more do not fit in memory", .text = "Number of spheres.",
-   .field = [](Scene &s) -> Field { return &s.grading.grains; }},
-  {.path = "grading.cloud_edge", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "mm",
-   .value = "10 mm", .range = positive, .group = "grain_size",
-   .text = "Edge of the cube that holds the cloud; excludes `d50`. Left out, that in which so many grains are as large as 10,000 "
-           "of them in 10 mm.",
-   .field = [](Scene &s) -> Field { return &s.grading.cloud_edge; }},
-  {.path = "grading.d50", .kind = Kind::quantity, .dimension = Dimension::length, .unit = "mm",
-   .presence = Presence::optional, .value = "0.45 mm", .range = positive, .group = "grain_size",
-   .text = "Median diameter by mass of the grains that are made, whatever their number: the curve keeps its shape, and the edge "
-           "of the cube follows. Excludes `cloud_edge`.",
-   .field = [](Scene &s) -> Field { return &s.grading.d50; }},
-  {.path = "grading.solid_fraction", .value = "0.33", .range = {0, 0.5, true},
+           "`curve`."},
+  {.path = "truncate",
+   .field = [](GradingSpec &g) { return PercentPair{&g.finest_percent, &g.coarsest_percent}; },
+   .value = "[0, 100]", .range = {0, 100}, .reason = "because these are percentages finer",
+   .text = "Percentages finer between which the curve is kept; the tails beyond are cut and the rest is rescaled."},
+  {.path = "grains", .field = member<&GradingSpec::grains>, .value = "10000", .range = {2, 1e8},
+   .reason = "because one grain makes no packing and more do not fit in memory", .text = "Number of spheres."},
+  {.path = "cloud_edge", .field = member<&GradingSpec::cloud_edge>, .unit = unit::mm, .value = "10 mm",
+   .range = positive, .group = "grain_size",
+   .text = "Edge of the cube that holds the cloud; excludes `d50`. Left out, that in which so many grains are as large "
+           "as 10,000 of them in 10 mm."},
+  {.path = "d50", .field = member<&GradingSpec::d50>, .unit = unit::mm, .presence = Presence::optional,
+   .value = "0.45 mm", .range = positive, .group = "grain_size",
+   .text = "Median diameter by mass of the grains that are made, whatever their number: the curve keeps its shape, and "
+           "the edge of the cube follows. Excludes `cloud_edge`."},
+  {.path = "solid_fraction", .field = member<&GradingSpec::solid_fraction>, .value = "0.33", .range = {0, 0.5, true},
    .reason = "because a denser cloud cannot be filled at random",
-   .text = "Solid volume of the cloud over that of its cube; with the edge it sets by how much the grains are "
-           "scaled up, with `d50` the edge.",
-   .field = [](Scene &s) -> Field { return &s.grading.solid_fraction; }},
-  {.path = "grading.density", .kind = Kind::quantity, .dimension = Dimension::density, .unit = "kg/m3",
-   .value = "2650 kg/m3", .range = {lightest_grains, heaviest_grains},
-   .reason = "because less is meant in g/cm3 and more in g/m3",
-   .text = "Density of the grains. Packings of other programs have the same range.",
-   .field = [](Scene &s) -> Field { return &s.grading.density; }},
-  {.path = "grading.seed", .kind = Kind::integer, .value = "1",
-   .text = "Realisation: the same seed gives the same specimen on any number of threads.",
-   .field = [](Scene &s) -> Field { return &s.grading.seed; }},
+   .text = "Solid volume of the cloud over that of its cube; with the edge it sets by how much the grains are scaled "
+           "up, with `d50` the edge."},
+  {.path = "density", .field = member<&GradingSpec::density>, .unit = unit::kg_m3, .value = "2650 kg/m3",
+   .range = {lightest_grains, heaviest_grains}, .reason = "because less is meant in g/cm3 and more in g/m3",
+   .text = "Density of the grains. Packings of other programs have the same range."},
+  {.path = "seed", .field = member<&GradingSpec::seed>, .value = "1",
+   .text = "Realisation: the same seed gives the same specimen on any number of threads."},
 };
 
 constexpr Key specimen_keys[] = {
-  {.path = "specimen.domain", .kind = Kind::choice, .value = "rigid-box", .choices = domain_choices,
-   .text = "What bounds the grains: six rigid frictionless walls, or a cell that repeats itself along x, y and z.",
-   .field = [](Scene &s) -> Field { return &s.specimen.domain; }},
-  {.path = "specimen.consolidation", .kind = Kind::choice, .value = "isotropic", .choices = consolidation_choices,
+  {.path = "domain", .field = member<&SpecimenSpec::domain>, .value = "rigid-box", .choices = domain_choices,
+   .text = "What bounds the grains: six rigid frictionless walls, or a cell that repeats itself along x, y and z."},
+  {.path = "consolidation", .field = member<&SpecimenSpec::consolidation>, .value = "isotropic",
+   .choices = consolidation_choices,
    .text = "How it is compressed: with equal stresses on all axes, or along y without lateral strain (k0, in the "
-           "periodic-cell only; not together with `file`).",
-   .field = [](Scene &s) -> Field { return &s.specimen.consolidation; }},
-  {.path = "specimen.pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+           "periodic-cell only; not together with `file`)."},
+  {.path = "pressure", .field = member_of<SpecimenSpec, &SpecimenSpec::pressure>, .unit = unit::kPa,
    .value = "200 kPa", .range = stresses, .reason = because_stresses,
-   .text = "Effective stress to which it is compressed: isotropic, p0'; with consolidation k0 the vertical one. "
-           "At most a twentieth of the modulus of contacts, which for the linear law is `young`.",
-   .field = [](Scene &s) -> Field { return &s.specimen.pressure; }},
-  {.path = "specimen.relative_density", .presence = Presence::experiment, .value = "0.64", .range = {0, 1},
-   .reason = "because D_r is 0 at e_max and 1 at e_min", .group = "preparation",
-   .text = "D_r = (e_max-e)/(e_max-e_min) to be reached; the preparation friction is searched for.",
-   .field = [](Scene &s) -> Field { return &s.specimen.relative_density; }},
-  {.path = "specimen.void_ratio", .presence = Presence::optional, .value = "0.67", .range = {0, 3, true},
-   .reason = "because a packing of spheres in contact has no other", .group = "preparation",
-   .text = "Void ratio e to be reached; the preparation friction is searched for.",
-   .field = [](Scene &s) -> Field { return &s.specimen.void_ratio; }},
-  {.path = "specimen.preparation_friction", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
+   .text = "Effective stress to which it is compressed: isotropic, p0'; with consolidation k0 the vertical one. At "
+           "most a twentieth of the modulus of contacts, which for the linear law is `young`."},
+  {.path = "relative_density", .field = member<&SpecimenSpec::relative_density>, .presence = Presence::experiment,
+   .value = "0.64", .range = {0, 1}, .reason = "because D_r is 0 at e_max and 1 at e_min", .group = "preparation",
+   .text = "D_r = (e_max-e)/(e_max-e_min) to be reached; the preparation friction is searched for."},
+  {.path = "void_ratio", .field = member<&SpecimenSpec::void_ratio>, .presence = Presence::optional, .value = "0.67",
+   .range = {0, 3, true}, .reason = "because a packing of spheres in contact has no other", .group = "preparation",
+   .text = "Void ratio e to be reached; the preparation friction is searched for."},
+  {.path = "preparation_friction", .field = member<&SpecimenSpec::preparation_friction>, .unit = unit::deg,
    .presence = Presence::optional, .value = "10 deg", .range = right_angle, .reason = because_tan,
-   .group = "preparation", .text = "Angle of friction while it is compressed; the density is what comes out.",
-   .field = [](Scene &s) -> Field { return &s.specimen.preparation_friction; }},
-  {.path = "specimen.file", .kind = Kind::text, .presence = Presence::optional, .value = "specimens/dr64.h5",
-   .group = "preparation", .text = "A prepared specimen or a snapshot (.h5), or one of a library of specimens (\"library.h5#s0007\"); packings of "
-   "other programs: `isostat convert FILE packing.h5`. Counts from the folder of the scene file or else from the working directory.",
-   .field = [](Scene &s) -> Field { return &s.specimen.file; }},
-  {.path = "specimen.e_min", .value = "0.568", .range = positive,
+   .group = "preparation", .text = "Angle of friction while it is compressed; the density is what comes out."},
+  {.path = "file", .field = member<&SpecimenSpec::file>, .presence = Presence::optional, .value = "specimens/dr64.h5",
+   .group = "preparation",
+   .text = "A prepared specimen or a snapshot (.h5), or one of a library of specimens (\"library.h5#s0007\"); packings "
+           "of other programs: `isostat convert FILE packing.h5`. Counts from the folder of the scene file or else "
+           "from the working directory."},
+  {.path = "e_min", .field = member<&SpecimenSpec::e_min>, .value = "0.568", .range = positive,
    .text = "Void ratio at D_r = 1. The default is that of the paper's packings of Karlsruhe fine sand; no default with "
-           "`table` or `file`. Below `e_max`; both are given or neither.",
-   .field = [](Scene &s) -> Field { return &s.specimen.e_min; }},
-  {.path = "specimen.e_max", .value = "0.841", .range = positive,
+           "`table` or `file`. Below `e_max`; both are given or neither."},
+  {.path = "e_max", .field = member<&SpecimenSpec::e_max>, .value = "0.841", .range = positive,
    .text = "Void ratio at D_r = 0. The default is that of the paper's packings of Karlsruhe fine sand; no default with "
-           "`table` or `file`.",
-   .field = [](Scene &s) -> Field { return &s.specimen.e_max; }},
-  {.path = "specimen.density_tolerance", .value = "0.01", .range = fraction,
-   .text = "Error allowed in the D_r reached; without e_min and e_max, e may be off by 0.3 times it.",
-   .field = [](Scene &s) -> Field { return &s.specimen.density_tolerance; }},
-  {.path = "specimen.damping", .value = "0.3", .range = {0, 1, false, true}, .reason = because_damping,
-   .text = "Local damping coefficient during preparation.",
-   .field = [](Scene &s) -> Field { return &s.specimen.damping; }},
-  {.path = "specimen.compaction_rate", .kind = Kind::quantity, .dimension = Dimension::rate, .unit = "1/s",
+           "`table` or `file`."},
+  {.path = "density_tolerance", .field = member<&SpecimenSpec::density_tolerance>, .value = "0.01", .range = fraction,
+   .text = "Error allowed in the D_r reached; without e_min and e_max, e may be off by 0.3 times it."},
+  {.path = "damping", .field = member<&SpecimenSpec::damping>, .value = "0.3", .range = {0, 1, false, true},
+   .reason = because_damping, .text = "Local damping coefficient during preparation."},
+  {.path = "compaction_rate", .field = member_of<SpecimenSpec, &SpecimenSpec::compaction_rate>, .unit = unit::per_s,
    .value = "60 1/s", .range = positive,
-   .text = "Ceiling of the strain rate at which the cloud is compacted; half of it from half of the pressure on.",
-   .field = [](Scene &s) -> Field { return &s.specimen.compaction_rate; }},
-  {.path = "specimen.cache", .kind = Kind::text, .value = "specimens",
-   .text = "Folder of prepared specimens, counted from the parent of the output folder.",
-   .field = [](Scene &s) -> Field { return &s.specimen.cache; }},
+   .text = "Ceiling of the strain rate at which the cloud is compacted; half of it from half of the pressure on."},
+  {.path = "cache", .field = member<&SpecimenSpec::cache>, .value = "specimens",
+   .text = "Folder of prepared specimens, counted from the parent of the output folder."},
 };
 
 constexpr Key output_keys[] = {
-  {.path = "output.folder", .kind = Kind::text, .presence = Presence::optional, .value = "results/my-run",
-   .text = "Folder of the run; left out: results/ and the name of the scene file.",
-   .field = [](Scene &s) -> Field { return &s.output.folder; }},
-  {.path = "output.record_stress", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+  {.path = "folder", .field = member<&OutputSpec::folder>, .presence = Presence::optional, .value = "results/my-run",
+   .text = "Folder of the run; left out: results/ and the name of the scene file."},
+  {.path = "record_stress", .field = member_of<OutputSpec, &OutputSpec::record_stress>, .unit = unit::kPa,
    .value = "1 kPa", .range = positive,
-   .text = "A row of the history is due whenever p' or q (in simple shear p' or tau) has moved by this much.",
-   .field = [](Scene &s) -> Field { return &s.output.record_stress; }},
-  {.path = "output.record_strain", .value = "1e-4", .range = positive,
-   .text = "A row of the history is due whenever the axial strain (in simple shear gamma_xy) has moved by this much, in a path "
-           "that turns at a strain by 1/25 of that if it is less; in a path that drives nothing whenever any stress has moved "
-           "by `record_stress` or any strain by this much.",
-   .field = [](Scene &s) -> Field { return &s.output.record_strain; }},
-  {.path = "output.record_steps", .kind = Kind::integer, .value = "5000", .range = {1, 1e18},
-   .text = "A row of the history is due after so many time steps at the latest.",
-   .field = [](Scene &s) -> Field { return &s.output.record_steps; }},
-  {.path = "output.snapshots", .kind = Kind::choice, .value = "reversals", .choices = snapshot_choices,
-   .text = "Whole packings are stored never, at reversals and ends of stages, or by strain.",
-   .field = [](Scene &s) -> Field { return &s.output.snapshots; }},
-  {.path = "output.snapshot_strain", .value = "0.01", .range = positive,
-   .text = "Spacing in axial strain (in simple shear in gamma_xy) of the snapshots by strain.",
-   .field = [](Scene &s) -> Field { return &s.output.snapshot_strain; }},
-  {.path = "output.paraview", .kind = Kind::boolean, .value = "true", .text = "Write snapshots for ParaView too.",
-   .field = [](Scene &s) -> Field { return &s.output.paraview; }},
-  {.path = "output.energy", .kind = Kind::boolean, .value = "false",
-   .text = "Energy balance in the history; runs the loop that sums dissipation.",
-   .field = [](Scene &s) -> Field { return &s.output.energy; }},
-  {.path = "output.yield_margin", .value = "1e-9", .range = {0, 1, false, true},
+   .text = "A row of the history is due whenever p' or q (in simple shear p' or tau) has moved by this much."},
+  {.path = "record_strain", .field = member_of<OutputSpec, &OutputSpec::record_strain>, .value = "1e-4",
+   .range = positive,
+   .text = "A row of the history is due whenever the axial strain (in simple shear gamma_xy) has moved by this much, "
+           "in a path that turns at a strain by 1/25 of that if it is less; in a path that drives nothing whenever any "
+           "stress has moved by `record_stress` or any strain by this much."},
+  {.path = "record_steps", .field = member_of<OutputSpec, &OutputSpec::record_steps>, .value = "5000",
+   .range = {1, 1e18}, .text = "A row of the history is due after so many time steps at the latest."},
+  {.path = "snapshots", .field = member_of<OutputSpec, &OutputSpec::snapshots>, .value = "reversals",
+   .choices = snapshot_choices,
+   .text = "Whole packings are stored never, at reversals and ends of stages, or by strain."},
+  {.path = "snapshot_strain", .field = member_of<OutputSpec, &OutputSpec::snapshot_strain>, .value = "0.01",
+   .range = positive, .text = "Spacing in axial strain (in simple shear in gamma_xy) of the snapshots by strain."},
+  {.path = "paraview", .field = member<&OutputSpec::paraview>, .value = "true",
+   .text = "Write snapshots for ParaView too."},
+  {.path = "energy", .field = member<&OutputSpec::energy>, .value = "false",
+   .text = "Energy balance in the history; runs the loop that sums dissipation."},
+  {.path = "yield_margin", .field = member<&OutputSpec::yield_margin>, .value = "1e-9", .range = {0, 1, false, true},
    .reason = "because it is a share",
-   .text = "A contact counts as sliding or rolling in I_R and shares of the history where its force or moment is below the "
-           "limit by this share at most. In balance contacts have mostly come off their limits: theory, section 13.",
-   .field = [](Scene &s) -> Field { return &s.output.yield_margin; }},
-  {.path = "output.checkpoint", .kind = Kind::quantity, .dimension = Dimension::interval, .unit = "min",
-   .value = "5 min", .range = positive, .text = "Wall-clock time between checkpoints.",
-   .field = [](Scene &s) -> Field { return &s.output.checkpoint_minutes; }},
+   .text = "A contact counts as sliding or rolling in I_R and shares of the history where its force or moment is below "
+           "the limit by this share at most. In balance contacts have mostly come off their limits: theory, section "
+           "13."},
+  {.path = "checkpoint", .field = member<&OutputSpec::checkpoint_minutes>, .unit = unit::min, .value = "5 min",
+   .range = positive, .text = "Wall-clock time between checkpoints."},
 };
 // clang-format on
 
@@ -227,9 +202,9 @@ A scene is one TOML file that says all about a run. This page is generated from 
 /// A rigid box is always consolidated isotropically, the default law needs no name, and without stages nothing is to be
 /// controlled. Not writing them keeps the recipes of specimens that are in caches. A packing from a file has grains and
 /// a stress of its own, against which only what was written is held.
-bool is_implied(const Key &key, const void *scene)
+bool is_implied(const Key &key, StructRef scene)
 {
-  const Scene &s = *static_cast<const Scene *>(scene);
+  const Scene &s = scene.as<Scene>();
   const std::string_view path = key.path;
   return (path == "specimen.consolidation" && s.specimen.domain == "rigid-box") ||
          (path == "contact.law" && is_default(s.contact)) ||
@@ -241,22 +216,46 @@ bool is_implied(const Key &key, const void *scene)
                      : path == "motion.increment" || path == "motion.balance" || path == "motion.left_out");
 }
 
-/// The word of contact.law is a number of registered_laws().
-std::size_t law_number(const void *place)
+std::string_view kind_name(const Law &law) { return law->name(); }
+std::string_view kind_name(const Stage &stage) { return behaviour(stage).kind(); }
+
+/// Which of the kinds a value is, by its name; setting it makes that kind with its defaults.
+template <class Value>
+EnumField kind_field(Value &value, std::span<const Value> kinds)
 {
-  const std::span<const Law> laws = registered_laws();
-  const Law &law = *static_cast<const Law *>(place);
-  const auto is_it = [&](const Law &l) { return std::string_view(l->name()) == law->name(); };
-  return static_cast<std::size_t>(std::find_if(laws.begin(), laws.end(), is_it) - laws.begin());
+  return {[&value, kinds] {
+            const auto is_it = [&](const Value &kind) { return kind_name(kind) == kind_name(value); };
+            return static_cast<std::size_t>(std::ranges::find_if(kinds, is_it) - kinds.begin());
+          },
+          [&value, kinds](std::size_t number) { value = kinds[number]; }};
 }
 
-void set_law(void *place, std::size_t number) { *static_cast<Law *>(place) = registered_laws()[number]; }
+template <class Value>
+std::vector<const char *> names_of(std::span<const Value> kinds)
+{
+  std::vector<const char *> names;
+  for (const Value &kind : kinds)
+    names.push_back(kind_name(kind).data());
+  return names;
+}
 
 /// The tables together with the keys of all laws that there are when the first scene is read.
 struct WholeSchema
 {
-  std::vector<const char *> law_names;
-  std::vector<Key> law_keys, kind_key;
+  std::vector<const char *> law_names = names_of(registered_laws()), stage_names = names_of(stage_kinds());
+  Key law_key[1] = {{.path = "law",
+                     .field = [](Scene &s) { return kind_field(s.contact, registered_laws()); },
+                     .value = law_names[0],
+                     .choices = law_names,
+                     .text = "The contact law."}};
+  Key stage_key[1] = {{.path = "kind",
+                       .field = [](Stage &stage) { return kind_field(stage, stage_kinds()); },
+                       .presence = Presence::required,
+                       .value = "undrained-monotonic",
+                       .choices = stage_names,
+                       .kinds = (1u << stage_names.size()) - 1,
+                       .text = "What the laboratory does; k0-compress and both kinds of simple shear need the domain "
+                               "periodic-cell."}};
   std::vector<Section> sections{std::begin(fixed_sections), std::end(fixed_sections)};
   std::optional<KeyTable> table;
   SceneSchema schema;
@@ -264,36 +263,17 @@ struct WholeSchema
   WholeSchema()
   {
     const std::span<const Law> laws = registered_laws();
-    for (const Law &law : laws)
-      law_names.push_back(law->name());
-    law_keys = {{.path = "contact.law",
-                 .kind = Kind::choice,
-                 .value = law_names[0],
-                 .choices = law_names,
-                 .text = "The contact law.",
-                 .field = [](Scene &s) -> Field { return EnumField(&s.contact, law_number, set_law); }}};
-    std::vector<KeyRun> runs{first_keys, {law_keys, "", 0, {}}};
+    std::vector<KeyRun> runs{title_key, splice<&Scene::grading>("grading", grading_keys), KeyRun(law_key, "contact")};
     for (std::size_t i = 0; i < laws.size(); ++i)
       runs.emplace_back(laws[i]->keys(), "contact", laws.size() > 1 ? 1u << i : 0u,
                         [](Scene &s) -> ContactLaw & { return *s.contact.operator->(); });
-    const auto kinds = stage_kind_names();
-    kind_key = {{.path = "stage.kind",
-                 .kind = Kind::choice,
-                 .presence = Presence::required,
-                 .value = "undrained-monotonic",
-                 .choices = kinds,
-                 .kinds = (1u << kinds.size()) - 1,
-                 .text = "What the laboratory does; k0-compress and both kinds of simple shear need the domain "
-                         "periodic-cell.",
-                 .field = [](Scene &, Stage &stage) -> Field { return EnumField(&stage); }}};
-    runs.emplace_back(specimen_keys);
-    runs.push_back(splice("motion", motion_keys(), 0, [](Scene &s) -> MotionSpec & { return s.motion; }));
-    runs.push_back(splice("motion", static_drive_keys(), 0, [](Scene &s) -> StaticDrive & { return s.drive; }));
-    runs.push_back(splice("control", control_keys(), 0, [](Scene &s) -> ControlSpec & { return s.control; }));
-    runs.push_back({kind_key, "", 0, {}});
-    runs.push_back(
-        splice("stage", stage_keys(), 0, [](Scene &, Stage &stage) -> StageBehaviour & { return behaviour(stage); }));
-    runs.emplace_back(output_keys);
+    for (const KeyRun &run :
+         {splice<&Scene::specimen>("specimen", specimen_keys), splice<&Scene::motion>("motion", motion_keys()),
+          splice<&Scene::drive>("motion", static_drive_keys()), splice<&Scene::control>("control", control_keys()),
+          KeyRun(stage_key, "stage"),
+          splice("stage", stage_keys(), 0, [](Stage &stage) -> StageBehaviour & { return behaviour(stage); }),
+          splice<&Scene::output>("output", output_keys)})
+      runs.push_back(run);
     table.emplace(std::span<const KeyRun>(runs));
     for (Section &section : sections)
       if (laws.size() > 1 && section.name == "contact")

@@ -9,28 +9,20 @@ namespace isostat
 {
 namespace
 {
-/// f(entries of a part): those of `all` themselves if they lie side by side, else a copy in the part's order.
+/// f(entries of a part): those of `all` themselves if they lie side by side, else a copy in the part's order, which is
+/// copied back unless it is constant.
 template <typename Member, typename T, typename F>
-void with_entries(const Member &part, std::span<const T> all, const F &f)
+void with_entries(const Member &part, std::span<T> all, const F &f)
 {
   if (part.side_by_side)
     return f(part.places.empty() ? all.first(0) : all.subspan(part.places.front(), part.places.size()));
-  std::vector<T> own;
+  std::vector<std::remove_const_t<T>> own;
   for (std::size_t place : part.places)
     own.push_back(all[place]);
-  f(std::span<const T>(own));
-}
-
-/// As above for entries that f fills.
-template <typename Member, typename T, typename F>
-void fill_entries(const Member &part, std::span<T> all, const F &f)
-{
-  if (part.side_by_side)
-    return f(part.places.empty() ? all.first(0) : all.subspan(part.places.front(), part.places.size()));
-  std::vector<T> own(part.places.size());
   f(std::span<T>(own));
-  for (std::size_t k = 0; k < own.size(); ++k)
-    all[part.places[k]] = own[k];
+  if constexpr (!std::is_const_v<T>)
+    for (std::size_t k = 0; k < own.size(); ++k)
+      all[part.places[k]] = own[k];
 }
 
 /// For messages: nothing if the part's numbers are the mesh's.
@@ -108,7 +100,7 @@ void CompositeMaterial::trial(std::span<const Gradient> increments, std::span<St
     try
       {
         with_entries(part, increments, [&](std::span<const Gradient> own) {
-          fill_entries(part, stresses, [&](std::span<Stress> found) { part.material->trial(own, found); });
+          with_entries(part, stresses, [&](std::span<Stress> found) { part.material->trial(own, found); });
         });
       }
     catch (const RunFailure &failure)
@@ -133,13 +125,13 @@ void CompositeMaterial::rollback()
 void CompositeMaterial::stiffness(std::span<Stiffness> tangents) const
 {
   for (const Member &part : parts_)
-    fill_entries(part, tangents, [&](std::span<Stiffness> own) { part.material->stiffness(own); });
+    with_entries(part, tangents, [&](std::span<Stiffness> own) { part.material->stiffness(own); });
 }
 
 void CompositeMaterial::wave_moduli(std::span<WaveModuli> moduli) const
 {
   for (const Member &part : parts_)
-    fill_entries(part, moduli, [&](std::span<WaveModuli> own) { part.material->wave_moduli(own); });
+    with_entries(part, moduli, [&](std::span<WaveModuli> own) { part.material->wave_moduli(own); });
 }
 
 MaterialState CompositeMaterial::pack() const

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/material/material.hpp"
+#include "fem/material/row_material.hpp"
 
 namespace isostat
 {
@@ -24,21 +24,17 @@ double bulk_modulus(const WaveModuli &moduli);
 /// Linear elastic isotropic soil: stress = committed stress + C : increment of strain. Tension positive.
 /// Serves as closed-form check of whatever the solver does.
 /// tested: tests/fem/material/elastic_test.cpp
-class Elastic : public TwoStateMaterial<Stress>
+class Elastic : public RowMaterial
 {
 public:
   /// Starts without stress.   @throws InputError if a parameter is out of its range
   Elastic(const ElasticParameters &parameters, std::size_t n_points);
 
-  std::string name() const override { return "elastic"; }
-  std::size_t n_points() const override { return committed_.size(); }
   void set_initial_stress(std::span<const Stress> effective) override;
   /// @throws RunFailure naming the first point whose stress is not a number
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
   void stiffness(std::span<Stiffness> tangents) const override;
   void wave_moduli(std::span<WaveModuli> moduli) const override;
-  MaterialState pack() const override;
-  void unpack(const MaterialState &state) override;
 
 private:
   double bulk_, shear_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/material/iwan.hpp"
 
+#include "base/scene/numbers.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/material/iwan_scene.hpp"
 
@@ -13,42 +14,17 @@ namespace isostat
 {
 namespace
 {
-/// All parameters, in the order of their keys.
-std::vector<double> as_numbers(IwanParameters p)
+IwanParameters checked(IwanParameters p)
 {
-  std::vector<double> numbers;
-  for (const Key &key : all_iwan_keys().keys)
-    {
-      const Field field = key.field(&p, nullptr);
-      const auto *const *real = std::get_if<double *>(&field);
-      numbers.push_back(real ? **real : *std::get<unsigned *>(field));
-    }
-  return numbers;
+  check_numbers(all_iwan_keys().keys, p, "iwan: ");
+  return p;
 }
-
-void require(bool holds, std::string_view name, double value, const std::string &range)
-{
-  if (!holds || !std::isfinite(value))
-    throw InputError(std::string("iwan: ").append(name) + " = " + std::to_string(value) + "; must be " + range);
-}
-
-void check(const IwanParameters &p)
-{
-  const std::vector<double> values = as_numbers(p);
-  for (std::size_t i = 0; const Key &key : all_iwan_keys().keys)
-    {
-      require(key.range.contains(values[i]), key.path, values[i],
-              range_text(key) + (*key.reason ? " " : "") + key.reason);
-      ++i;
-    }
-}
-
-std::string at_iwan_point(std::size_t i) { return "iwan: point " + std::to_string(i) + ": "; }
 } // namespace
 
 Backbone fit_hyperbola(unsigned n)
 {
-  require(n >= 4 && n <= 128, "elements", n, "4 to 128");
+  if (n < 4 || n > 128)
+    throw InputError("iwan: elements = " + std::to_string(n) + "; must be 4 to 128");
   // Lift and last node: those of the minimax error, found by search for n = 8 ... 20; of many elements the last node is
   // where the lifted hyperbola reaches the strength, and 1.2/lift would be beyond it.
   const bool many = n > 32;
@@ -72,12 +48,11 @@ Backbone fit_hyperbola(unsigned n)
   return b;
 }
 
-Iwan::Iwan(const IwanParameters &p, std::size_t n_points) : parameters_(p), n_points_(n_points)
+Iwan::Iwan(const IwanParameters &p, std::size_t n_points)
+    : RowMaterial("iwan", numbers_of(all_iwan_keys().keys, checked(p)), n_points, elements + 5 * padded(p.elements)),
+      parameters_(p), width_(padded(p.elements)), stride_(elements + 5 * width_)
 {
-  check(p);
   const Backbone b = fit_hyperbola(p.elements);
-  width_ = (p.elements + lanes - 1) / lanes * lanes;
-  stride_ = elements + 5 * width_;
   bulk_per_shear_ = ElasticParameters{1.0, p.poisson_ratio}.bulk_modulus();
   weights_.assign(width_, 0.0); // padding bears nothing and yields never
   yields_.assign(width_, 1.0);
@@ -86,8 +61,6 @@ Iwan::Iwan(const IwanParameters &p, std::size_t n_points) : parameters_(p), n_po
       weights_[k] = b.weights[k];
       yields_[k] = p.strength_ratio * b.weights[k] * b.yield_strains[k];
     }
-  committed_.resize(n_points * stride_);
-  trial_.resize(n_points * stride_);
   increments_.resize(n_points);
   const double s = -p.reference_pressure;
   set_initial_stress(std::vector<Stress>(n_points, Stress{s, s, s, 0, 0, 0}));
@@ -99,19 +72,19 @@ double Iwan::loosening(std::size_t i) const { return committed_[i * stride_ + lo
 
 void Iwan::set_initial_stress(std::span<const Stress> effective)
 {
-  assert(effective.size() == n_points_);
+  assert(effective.size() == n_points());
   std::vector<double> states(committed_.size(), 0.0);
-  for (std::size_t i = 0; i < n_points_; ++i)
+  for (std::size_t i = 0; i < n_points(); ++i)
     {
       const Stress &t = effective[i];
       const double p = -(t[0] + t[1] + t[2]) / 3;
       const Shear s{(t[0] - t[1]) / 2, (2 * t[2] - t[0] - t[1]) / (2 * std::numbers::sqrt3), t[3], t[4], t[5]};
       const double size = std::sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + s[3] * s[3] + s[4] * s[4]);
       if (!(p > 0) || !std::isfinite(p))
-        throw InputError(at_iwan_point(i) + "initial mean effective stress = " + std::to_string(p) +
+        throw InputError(at_point(i) + "initial mean effective stress = " + std::to_string(p) +
                          " Pa; must be above 0 (compression); give the surface a load");
       if (!(size <= parameters_.strength_ratio * p))
-        throw InputError(at_iwan_point(i) + "initial stress ratio = " + std::to_string(size / p) +
+        throw InputError(at_point(i) + "initial stress ratio = " + std::to_string(size / p) +
                          "; must not be above strength_ratio; choose k0 nearer to 1");
       double *state = &states[i * stride_];
       state[pressure] = p;
@@ -157,9 +130,9 @@ void Iwan::share_out(const Shear &s, double p, double *state) const
 
 void Iwan::trial(std::span<const Gradient> increments, std::span<Stress> stresses)
 {
-  assert(increments.size() == n_points_ && stresses.size() == n_points_);
+  assert(increments.size() == n_points() && stresses.size() == n_points());
   has_trial_ = false;
-  for (std::size_t i = 0; i < n_points_; ++i)
+  for (std::size_t i = 0; i < n_points(); ++i)
     {
       double *to = &trial_[i * stride_];
       integrate(&committed_[i * stride_], increment(increments[i], i), to);
@@ -171,24 +144,16 @@ void Iwan::trial(std::span<const Gradient> increments, std::span<Stress> stresse
 
 void Iwan::stiffness(std::span<Stiffness> tangents) const
 {
-  for (std::size_t i = 0; i < n_points_; ++i)
+  for (std::size_t i = 0; i < n_points(); ++i)
     tangents[i] = tangent(i);
 }
 
 void Iwan::wave_moduli(std::span<WaveModuli> moduli) const
 {
-  for (std::size_t i = 0; i < n_points_; ++i)
+  for (std::size_t i = 0; i < n_points(); ++i)
     {
       const double shear = shear_modulus(mean_pressure(i));
       moduli[i] = {(bulk_per_shear_ + 4.0 / 3.0) * shear, shear};
     }
-}
-
-MaterialState Iwan::pack() const { return packed_state(name(), as_numbers(parameters_), committed_, n_points_); }
-
-void Iwan::unpack(const MaterialState &state)
-{
-  committed_ = unpacked_state(state, name(), as_numbers(parameters_), committed_.size(), n_points_);
-  has_trial_ = false;
 }
 } // namespace isostat

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/material/material.hpp"
+#include "fem/material/row_material.hpp"
 
 namespace isostat
 {
@@ -65,15 +65,13 @@ Backbone fit_hyperbola(unsigned elements);
 /// Tension positive in stresses and strains of the interface. Rotations are not followed: strains are small. There is
 /// no critical void ratio: cyclic mobility tends to loops of one size, and reconsolidation strains are those of
 /// loosening and of K.   tested: tests/fem/material/iwan_test.cpp, tests/fem/material/iwan_liquefaction_test.cpp
-class Iwan : public TwoStateMaterial<double>
+class Iwan : public RowMaterial
 {
 public:
   /// Starts at the isotropic stress p' = reference_pressure.
   /// @throws InputError naming a parameter out of its range
   Iwan(const IwanParameters &parameters, std::size_t n_points);
 
-  std::string name() const override { return "iwan"; }
-  std::size_t n_points() const override { return n_points_; }
   /// The deviator of the normal stresses is shared out in proportion to the elements' strengths: no element yields at
   /// once, shear begins with G. Shear stresses (a slope) are those of virgin loading at this p': shear further on
   /// follows the backbone, shear back begins with G and is twice as wide (Masing).
@@ -86,8 +84,6 @@ public:
   /// symmetric; singular at the floor of p'.
   void stiffness(std::span<Stiffness> tangents) const override;
   void wave_moduli(std::span<WaveModuli> moduli) const override;
-  MaterialState pack() const override;
-  void unpack(const MaterialState &state) override;
 
   /// p' of the committed state, compression positive. Pa
   double mean_pressure(std::size_t point) const;
@@ -108,6 +104,7 @@ private:
     deviator,
     elements = deviator + 5
   };
+  static std::size_t padded(std::size_t n_elements) { return (n_elements + lanes - 1) / lanes * lanes; }
   using Shear = std::array<double, 5>; // deviator in axes that make |s| = sqrt(J2) and |gamma| = gamma of simple shear
   struct Increment
   {
@@ -125,7 +122,7 @@ private:
   Stiffness tangent(std::size_t point) const;
 
   IwanParameters parameters_;
-  std::size_t n_points_, width_, stride_; // elements with padding; numbers per point
+  std::size_t width_, stride_; // elements with padding; numbers per point
   double bulk_per_shear_;
   std::vector<double> weights_, yields_; // w_k, M w_k x_k
   std::vector<Gradient> increments_;     // of the last trial

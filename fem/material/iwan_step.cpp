@@ -49,7 +49,7 @@ Iwan::Increment Iwan::increment(const Gradient &h, std::size_t i) const
   for (double g : d.shear)
     square += g * g;
   if (!(square <= 1))
-    throw RunFailure("iwan: point " + std::to_string(i) + ": strain increment = " + std::to_string(std::sqrt(square)) +
+    throw RunFailure(at_point(i) + "strain increment = " + std::to_string(std::sqrt(square)) +
                      "; must be a number of at most 1; take smaller steps");
   const double steps = std::sqrt(square) / parameters_.substep;
   d.steps = static_cast<unsigned>(steps);

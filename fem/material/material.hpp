@@ -8,7 +8,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace isostat
@@ -75,20 +74,4 @@ public:
   virtual void unpack(const MaterialState &state) = 0;
 };
 
-/// A material that keeps its points as two rows of values: the committed ones and those of the last trial.
-template <typename Value>
-class TwoStateMaterial : public Material
-{
-public:
-  void commit() override
-  {
-    if (std::exchange(has_trial_, false))
-      std::swap(committed_, trial_);
-  }
-  void rollback() override { has_trial_ = false; }
-
-protected:
-  std::vector<Value> committed_, trial_;
-  bool has_trial_ = false;
-};
 } // namespace isostat

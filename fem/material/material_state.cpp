@@ -48,28 +48,4 @@ void unpack_rows(const MaterialState &state, const std::string &material, std::s
       in.expect_end();
     }
 }
-
-MaterialState packed_state(const std::string &material, std::span<const double> parameters,
-                           std::span<const double> values, std::size_t n_points)
-{
-  ByteWriter out;
-  out.text(material);
-  out.numbers(parameters);
-  return {out.take(), packed_rows(values, n_points)};
-}
-
-std::vector<double> unpacked_state(const MaterialState &state, const std::string &material,
-                                   const std::vector<double> &parameters, std::size_t n_values, std::size_t n_points)
-{
-  ByteReader in(state.common, material);
-  in.expect(in.text(), material);
-  std::vector<double> stored = parameters;
-  in.numbers(stored, "parameters");
-  if (stored != parameters)
-    in.fail("its parameters are others");
-  in.expect_end();
-  std::vector<double> values(n_values);
-  unpack_rows(state, material, values, n_points);
-  return values;
-}
 } // namespace isostat

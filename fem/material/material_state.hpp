@@ -24,11 +24,4 @@ struct MaterialState
 std::vector<std::vector<std::byte>> packed_rows(std::span<const double> values, std::size_t n_points);
 void unpack_rows(const MaterialState &state, const std::string &material, std::span<double> values,
                  std::size_t n_points);
-
-/// A state whose points are such rows and have a name and parameters in common; and back.
-/// `n_values`: those of all points.   @throws InputError  as above, another name, other parameters
-MaterialState packed_state(const std::string &material, std::span<const double> parameters,
-                           std::span<const double> values, std::size_t n_points);
-std::vector<double> unpacked_state(const MaterialState &state, const std::string &material,
-                                   const std::vector<double> &parameters, std::size_t n_values, std::size_t n_points);
 } // namespace isostat

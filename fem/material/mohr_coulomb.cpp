@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/material/mohr_coulomb.hpp"
 
+#include "base/scene/numbers.hpp"
 #include "fem/material/mohr_coulomb_scene.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 namespace isostat
 {
@@ -21,46 +21,18 @@ MohrCoulombParameters completed(MohrCoulombParameters p)
   return p;
 }
 
-/// All parameters, in the order of their keys.   @pre completed
-std::vector<double> as_numbers(MohrCoulombParameters p)
+MohrCoulombParameters checked(const MohrCoulombParameters &p)
 {
-  std::vector<double> numbers;
-  for (const Key &key : all_mohr_coulomb_keys().keys)
-    {
-      const Field field = key.field(&p, nullptr);
-      const auto *const *real = std::get_if<double *>(&field);
-      numbers.push_back(real ? **real : **std::get<std::optional<double> *>(field));
-    }
-  return numbers;
-}
-
-std::string said(const Key &key, double scale)
-{
-  return std::string("mohr_coulomb: ").append(key.path) + " = " +
-         (key.kind == Kind::quantity ? format_bound(scale, key.dimension, key.unit) : number_text(scale)) + "; ";
-}
-
-void check(const MohrCoulombParameters &p)
-{
-  const std::vector<double> values = as_numbers(completed(p));
+  MohrCoulombParameters all = completed(p);
+  const std::span<const Key> keys = all_mohr_coulomb_keys().keys;
+  const std::string who = "mohr_coulomb: ";
+  check_numbers(keys, all, who);
   const MohrCoulombProblem problem = mohr_coulomb_problem(p);
-  const auto scale = [](const Key &key, double value) { // the one of its range
-    return key.kind == Kind::quantity && key.dimension == Dimension::angle ? std::atan(value) * 180 / std::numbers::pi
-                                                                           : value;
-  };
-  for (std::size_t i = 0; const Key &key : all_mohr_coulomb_keys().keys)
-    if (const double value = scale(key, values[i++]); !key.range.contains(value))
-      throw InputError(said(key, value) + "must be " + range_text(key) + (*key.reason ? " " : "") + key.reason +
-                       "; give a value in that range");
-  for (std::size_t i = 0; const Key &key : all_mohr_coulomb_keys().keys)
-    {
-      const double value = scale(key, values[i++]);
-      if (problem.key && key.name() == problem.key)
-        throw InputError(said(key, value) + problem.text);
-    }
+  for (std::size_t i = 0; const double value : numbers_of(keys, all))
+    if (const Key &key = keys[i++]; problem.key && key.name() == problem.key)
+      throw InputError(who + number_in_words(key, value) + "; " + problem.text);
+  return all;
 }
-
-std::string at_mohr_coulomb_point(std::size_t i) { return "mohr_coulomb: point " + std::to_string(i) + ": "; }
 
 bool is_finite(const Stress &stress)
 {
@@ -80,11 +52,9 @@ MohrCoulombParameters weakened(const MohrCoulombParameters &soil, double factor)
 }
 
 MohrCoulomb::MohrCoulomb(const MohrCoulombParameters &p, std::size_t n_points)
-    : parameters_(completed(p)), n_points_(n_points)
+    : RowMaterial("mohr_coulomb", numbers_of(all_mohr_coulomb_keys().keys, checked(p)), n_points, stride),
+      parameters_(completed(p)), lambda_per_shear_(2 * p.poisson_ratio / (1 - 2 * p.poisson_ratio))
 {
-  check(p);
-  lambda_per_shear_ = 2 * p.poisson_ratio / (1 - 2 * p.poisson_ratio);
-  committed_.assign(n_points * stride, 0.0);
   for (std::size_t i = 0; i < n_points; ++i)
     committed_[i * stride + modulus] = p.shear_modulus;
   trial_ = committed_;
@@ -104,10 +74,10 @@ MohrCoulombStrength MohrCoulomb::strength(double kappa) const
 
 void MohrCoulomb::set_initial_stress(std::span<const Stress> effective)
 {
-  assert(effective.size() == n_points_);
+  assert(effective.size() == n_points());
   const MohrCoulombParameters &p = parameters_;
   std::vector<double> states(committed_.size(), 0.0);
-  for (std::size_t i = 0; i < n_points_; ++i)
+  for (std::size_t i = 0; i < n_points(); ++i)
     {
       const Stress &s = effective[i];
       double *state = &states[i * stride];
@@ -115,10 +85,10 @@ void MohrCoulomb::set_initial_stress(std::span<const Stress> effective)
       std::copy(s.begin(), s.end(), state);
       state[modulus] = p.shear_modulus * std::pow(pressure / p.reference_pressure, p.exponent);
       if (!is_finite(s))
-        throw InputError(at_mohr_coulomb_point(i) + "the initial stress is not a number; give one");
+        throw InputError(at_point(i) + "the initial stress is not a number; give one");
       constexpr double round_off = 1e-9;
       if (const double beyond = yield(s); beyond > round_off * std::abs(s[0] + s[1] + s[2]))
-        throw InputError(at_mohr_coulomb_point(i) + "initial principal stresses are beyond the strength by " +
+        throw InputError(at_point(i) + "initial principal stresses are beyond the strength by " +
                          number_text(std::round(beyond) / 1e3) +
                          " kPa of (s_1 - s_3) - (s_1 + s_3) sin(phi) - 2 c cos(phi) with pressures s_1 >= s_3; choose "
                          "k0 nearer to 1, or a larger friction_angle or cohesion");
@@ -129,15 +99,15 @@ void MohrCoulomb::set_initial_stress(std::span<const Stress> effective)
 
 void MohrCoulomb::trial(std::span<const Gradient> increments, std::span<Stress> stresses)
 {
-  assert(increments.size() == n_points_ && stresses.size() == n_points_);
+  assert(increments.size() == n_points() && stresses.size() == n_points());
   has_trial_ = false;
-  for (std::size_t i = 0; i < n_points_; ++i)
+  for (std::size_t i = 0; i < n_points(); ++i)
     {
       const double *from = &committed_[i * stride];
       double *to = &trial_[i * stride];
       const Step d = step(from, increments[i]);
       if (!is_finite(d.stress))
-        throw RunFailure(at_mohr_coulomb_point(i) + "the stress is not a number; take smaller steps");
+        throw RunFailure(at_point(i) + "the stress is not a number; take smaller steps");
       std::copy(d.stress.begin(), d.stress.end(), to);
       to[plastic] = d.plastic;
       to[modulus] = from[modulus];
@@ -149,24 +119,16 @@ void MohrCoulomb::trial(std::span<const Gradient> increments, std::span<Stress> 
 
 void MohrCoulomb::stiffness(std::span<Stiffness> tangents) const
 {
-  for (std::size_t i = 0; i < n_points_; ++i)
+  for (std::size_t i = 0; i < n_points(); ++i)
     tangents[i] = tangent(&committed_[i * stride], has_trial_ ? increments_[i] : Gradient{});
 }
 
 void MohrCoulomb::wave_moduli(std::span<WaveModuli> moduli) const
 {
-  for (std::size_t i = 0; i < n_points_; ++i)
+  for (std::size_t i = 0; i < n_points(); ++i)
     {
       const double shear = committed_[i * stride + modulus];
       moduli[i] = {(lambda_per_shear_ + 2) * shear, shear};
     }
-}
-
-MaterialState MohrCoulomb::pack() const { return packed_state(name(), as_numbers(parameters_), committed_, n_points_); }
-
-void MohrCoulomb::unpack(const MaterialState &state)
-{
-  committed_ = unpacked_state(state, name(), as_numbers(parameters_), committed_.size(), n_points_);
-  has_trial_ = false;
 }
 } // namespace isostat

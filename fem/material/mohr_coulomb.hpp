@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/material/material.hpp"
 #include "fem/material/mohr_coulomb_return.hpp"
+#include "fem/material/row_material.hpp"
 
 #include <optional>
 
@@ -49,15 +49,13 @@ MohrCoulombParameters weakened(const MohrCoulombParameters &soil, double factor)
 /// the elasticity gives back what it stores. Softening is local: a band is as thick as elements let it be, and the work
 /// that it takes falls with their size.   tested: tests/fem/material/mohr_coulomb_test.cpp,
 /// tests/verification/bearing_capacity_test.cpp
-class MohrCoulomb : public TwoStateMaterial<double>
+class MohrCoulomb : public RowMaterial
 {
 public:
   /// Starts without stress, with the moduli of reference_pressure.
   /// @throws InputError naming a parameter out of its range, its value and a remedy
   MohrCoulomb(const MohrCoulombParameters &parameters, std::size_t n_points);
 
-  std::string name() const override { return "mohr_coulomb"; }
-  std::size_t n_points() const override { return n_points_; }
   /// @throws InputError naming the point if its stress is not a number or beyond the strength
   void set_initial_stress(std::span<const Stress> effective) override;
   /// Cost, in us a point: 0.3 within the surface, 0.5 on it, 1.2 while it softens; a tangent 0.4, 0.6 and 1.6.
@@ -67,8 +65,6 @@ public:
   /// without softening, a millionth of the elastic one is added.
   void stiffness(std::span<Stiffness> tangents) const override;
   void wave_moduli(std::span<WaveModuli> moduli) const override;
-  MaterialState pack() const override;
-  void unpack(const MaterialState &state) override;
 
   /// kappa of the committed state [-]
   double plastic_shear_strain(std::size_t point) const { return committed_[point * stride + plastic]; }
@@ -100,7 +96,6 @@ private:
   Eigen::Matrix3d principal_derivative(const double *from, const Step &step) const;
 
   MohrCoulombParameters parameters_;
-  std::size_t n_points_;
   double lambda_per_shear_;
   std::vector<Gradient> increments_; // of the last trial
 };

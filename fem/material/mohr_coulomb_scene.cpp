@@ -13,47 +13,43 @@ using namespace ranges;
 
 // clang-format off
 constexpr Key mohr_coulomb_in_scenes[] = {
-  {.path = "reference_pressure", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+  {.path = "reference_pressure", .field = member<&MohrCoulombParameters::reference_pressure>, .unit = unit::kPa,
    .value = "100 kPa", .range = ranges::stresses, .reason = ranges::because_stresses,
-   .text = "Mean effective stress p_r at which the stiffness is given.",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.reference_pressure; }},
-  {.path = "exponent", .value = "0", .range = {0, 1}, .reason = "because stiffness does not fall with depth, nor does it rise faster than stress",
-   .text = "n of the shear modulus G (p'/p_r)^n of a point at its mean effective stress of the start; it stays constant. 0: G everywhere.",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.exponent; }},
-  {.path = "friction_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "40 deg",
-   .range = right_angle, .reason = because_tan, .text = "Angle of friction phi; 0 deg: Tresca's law (undrained clay).",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.friction; }},
-  {.path = "cohesion", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa", .value = "1 kPa",
-   .range = not_negative, .text = "Cohesion c. Soil at a free surface has no other strength; some kPa keep its stiffness regular. "
-                                  "Above 0 kPa without friction.",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.cohesion; }},
-  {.path = "dilatancy_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg", .value = "10 deg",
-   .range = right_angle, .reason = because_tan, .text = "Angle of dilatancy psi, at most `friction_angle`: equal to it the flow is associated.",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.dilatancy; }},
-  {.path = "softening_strain", .value = "0", .range = {0, 10}, .reason = "because strains are small",
-   .text = "Plastic shear strain over which strength and dilatancy fall to their residual values, linear in tan(phi), c, tan(psi); 0: none falls. "
-           "Above 0 with a residual value, and only then.",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.softening_strain; }},
-  {.path = "residual_friction_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
+   .text = "Mean effective stress p_r at which the stiffness is given."},
+  {.path = "exponent", .field = member<&MohrCoulombParameters::exponent>, .value = "0", .range = {0, 1},
+   .reason = "because stiffness does not fall with depth, nor does it rise faster than stress",
+   .text = "n of the shear modulus G (p'/p_r)^n of a point at its mean effective stress of the start; it stays "
+           "constant. 0: G everywhere."},
+  {.path = "friction_angle", .field = member<&MohrCoulombParameters::friction>, .unit = unit::deg, .value = "40 deg",
+   .range = right_angle, .reason = because_tan, .text = "Angle of friction phi; 0 deg: Tresca's law (undrained clay)."},
+  {.path = "cohesion", .field = member<&MohrCoulombParameters::cohesion>, .unit = unit::kPa, .value = "1 kPa",
+   .range = not_negative,
+   .text = "Cohesion c. Soil at a free surface has no other strength; some kPa keep its stiffness regular. Above 0 kPa "
+           "without friction."},
+  {.path = "dilatancy_angle", .field = member<&MohrCoulombParameters::dilatancy>, .unit = unit::deg, .value = "10 deg",
+   .range = right_angle, .reason = because_tan,
+   .text = "Angle of dilatancy psi, at most `friction_angle`: equal to it the flow is associated."},
+  {.path = "softening_strain", .field = member<&MohrCoulombParameters::softening_strain>, .value = "0",
+   .range = {0, 10}, .reason = "because strains are small",
+   .text = "Plastic shear strain over which strength and dilatancy fall to their residual values, linear in tan(phi), "
+           "c, tan(psi); 0: none falls. Above 0 with a residual value, and only then."},
+  {.path = "residual_friction_angle", .field = member<&MohrCoulombParameters::residual_friction>, .unit = unit::deg,
    .presence = Presence::optional, .value = "33 deg", .range = right_angle, .reason = because_tan,
-   .text = "Friction angle after softening, at most `friction_angle`; left out: it does not fall.",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.residual_friction; }},
-  {.path = "residual_cohesion", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "kPa",
+   .text = "Friction angle after softening, at most `friction_angle`; left out: it does not fall."},
+  {.path = "residual_cohesion", .field = member<&MohrCoulombParameters::residual_cohesion>, .unit = unit::kPa,
    .presence = Presence::optional, .value = "0 kPa", .range = not_negative,
-   .text = "Cohesion after softening, at most `cohesion`; left out: it does not fall. "
-           "Above 0 kPa if no friction is left.",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.residual_cohesion; }},
-  {.path = "residual_dilatancy_angle", .kind = Kind::quantity, .dimension = Dimension::angle, .unit = "deg",
+   .text = "Cohesion after softening, at most `cohesion`; left out: it does not fall. Above 0 kPa if no friction is "
+           "left."},
+  {.path = "residual_dilatancy_angle", .field = member<&MohrCoulombParameters::residual_dilatancy>, .unit = unit::deg,
    .presence = Presence::optional, .value = "0 deg", .range = right_angle, .reason = because_tan,
-   .text = "Dilatancy angle after softening, at most `dilatancy_angle` and the residual friction angle; left out: it does not fall.",
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.residual_dilatancy; }},
+   .text = "Dilatancy angle after softening, at most `dilatancy_angle` and the residual friction angle; left out: it "
+           "does not fall."},
 };
 
 constexpr Key mohr_coulomb_fixed[] = {
-  {.path = "shear_modulus", .kind = Kind::quantity, .dimension = Dimension::pressure, .unit = "Pa", .range = positive,
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.shear_modulus; }},
-  {.path = "poisson_ratio", .range = {-1, 0.5, true, true},
-   .field = [](MohrCoulombParameters &p) -> Field { return &p.poisson_ratio; }},
+  {.path = "shear_modulus", .field = member<&MohrCoulombParameters::shear_modulus>, .unit = unit::Pa,
+   .range = positive},
+  {.path = "poisson_ratio", .field = member<&MohrCoulombParameters::poisson_ratio>, .range = {-1, 0.5, true, true}},
 };
 // clang-format on
 } // namespace

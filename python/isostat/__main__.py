@@ -22,6 +22,7 @@ CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by smal
              "library": "periodic specimens at several pressures and densities, in one file",
              "study": "NAME: the runs, tables and figures behind a page of results"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
+         "animate": "RESULTS [-o FILE.gif]: packings and their forces as the run goes on, also as .mp4",
          "report": "RESULTS: figures and report.html of a results folder once more, also of a run under way"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
@@ -50,10 +51,11 @@ def help_text():
     return text + f"\n  --version                version and revision\n  --help\n\nscenes to start from: {command.SCENES / 'scenes'}"
 
 
-def view(words):
+def view(name, words):
     """Becomes the program that draws and reports."""
     os.environ["PYTHONPATH"] = os.path.dirname(__file__)
-    os.execv(sys.executable, [sys.executable, "-B", "-P", "-u", "-m", "report", *words])
+    module = ["figures.animation"] if name == "animate" else ["report", name]
+    os.execv(sys.executable, [sys.executable, "-B", "-P", "-u", "-m", *module, *words])
 
 
 def refuse(name):
@@ -69,7 +71,7 @@ def main(words=None):
     if name in PACKINGS:
         return importlib.import_module("isostat.convert_packing").main(rest)
     if name in VIEWS:
-        return view([name, *rest])
+        return view(name, rest)
     if name in ("--help", "-h"):
         print(help_text())
     elif name == "--version":

@@ -89,16 +89,14 @@ std::string SceneMutator::bound(const Key &key)
     return number();
   if (const std::size_t side = below(3); side > 0)
     x = std::nextafter(x, side == 1 ? -HUGE_VAL : HUGE_VAL);
-  return key.kind == Kind::quantity || key.kind == Kind::quantity_list
-             ? unquoted(format_bound(x, key.dimension, key.unit))
-             : number_text(x);
+  return *key.unit.name ? unquoted(format_bound(x, key.unit.dimension, key.unit.name)) : number_text(x);
 }
 
 std::string SceneMutator::quantity(const Key &key)
 {
   if (below(4) == 0)
     return '"' + bound(key) + '"';
-  const std::string unit = below(8) == 0 ? units[below(units.size())] : key.unit;
+  const std::string unit = below(8) == 0 ? units[below(units.size())] : key.unit.name;
   return '"' + unquoted(number()) + (below(8) == 0 ? "" : " ") + unit + '"';
 }
 
@@ -114,7 +112,7 @@ std::string SceneMutator::value(const Key &key)
       text += (i > 0 ? ", " : "") + item();
     return text + "]";
   };
-  switch (key.kind)
+  switch (key.kind())
     {
     case Kind::quantity:
       return quantity(key);

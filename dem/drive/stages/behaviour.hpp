@@ -76,6 +76,8 @@ struct StageContext
 class StageBehaviour
 {
 public:
+  using KeyRoot = StageBehaviour; ///< where keys look for settings of a kind (base/scene/field.hpp)
+
   virtual ~StageBehaviour() = default;
   bool operator==(const StageBehaviour &) const = default;
 

@@ -20,38 +20,58 @@ Mat3 ConstantVolume::next_gradient(const StageContext &c, const Observation &see
   return mode().constant_volume(driven_step(c, seen));
 }
 
-void note_liquefaction(const LiquefactionLimit &limit, const ShearMode &mode, double strain, const Observation &seen,
-                       DriveState &state, Verdict &verdict)
+void LiquefiableShear::note_liquefaction(const Observation &seen, DriveState &state, Verdict &verdict) const
 {
   UndrainedRecord &record = state.undrained;
   if (record.liquefaction)
     return;
-  record.max_strain_before = std::max(record.max_strain_before, std::abs(strain));
-  if (seen.p >= limit.liquefaction_ratio * state.path.p0())
+  record.max_strain_before = std::max(record.max_strain_before, std::abs(strain(seen)));
+  if (seen.p >= liquefaction_ratio * state.path.p0())
     return;
-  record.liquefaction = Liquefaction{seen.step, record.reversals, strain};
+  record.liquefaction = Liquefaction{seen.step, record.reversals, strain(seen)};
   verdict.notable = true;
   verdict.event = fmt::format("initial liquefaction (p'/p0 < {:g}) at step {}, after {} reversals, {} {:.4g} %",
-                              limit.liquefaction_ratio, seen.step, record.reversals, mode.strain_name, 100 * strain);
+                              liquefaction_ratio, seen.step, record.reversals, mode().strain_name, 100 * strain(seen));
 }
 
-Verdict ConstantVolume::reached(const StageContext &c, const Observation &seen) const
+Verdict LiquefiableShear::reached(const StageContext &c, const Observation &seen) const
 {
-  Verdict verdict = ShearStage::reached(c, seen);
-  note_liquefaction(*this, mode(), strain(seen), seen, c.state, verdict);
+  DriveState &state = c.state;
+  Verdict verdict;
+  if (shears() && keeps_volume())
+    note_liquefaction(seen, state, verdict);
+  if (notes_response())
+    follow_response(load(seen), strain(seen), load_amplitude(state), mode(), seen.step, state, verdict);
+  const double direction = sign(state.loading.direction);
+  if (turns() && (direction * load(seen) >= direction * turning_load(state) ||
+                  direction * state.loading.strain >= direction * turning_strain(state)))
+    turn_round(c, seen, verdict);
+  verdict.end = ends(c, seen);
   return verdict;
+}
+
+void LiquefiableShear::turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const
+{
+  DriveState &state = c.state;
+  UndrainedRecord &record = state.undrained;
+  const double now = load(seen), over = sign(state.loading.direction) * (now - turning_load(state));
+  if (std::isfinite(over))
+    record.worst_overshoot = std::max(record.worst_overshoot, over);
+  record.reversals += 1;
+  state.loading.direction = opposite(state.loading.direction);
+  if (notes_response())
+    turn_response(now, state, over >= 0);
+  load_from_rest(c, now);
+  verdict.notable = true;
+  verdict.event =
+      fmt::format("reversal {} at step {}: {} {:.4g} %, p' {:.2f} kPa, {} {:.2f} kPa", record.reversals, seen.step,
+                  mode().strain_name, 100 * strain(seen), seen.p / 1e3, mode().load_name, now / 1e3);
 }
 
 double CyclicConstantVolume::turning_load(const DriveState &state) const
 {
   const double sigma_v = state.path.lateral_target[1];
   return average(sigma_v) + sign(state.loading.direction) * amplitude(sigma_v);
-}
-
-void CyclicConstantVolume::begin_shear(const StageContext &c, const Mat3 &stress) const
-{
-  ConstantVolume::begin_shear(c, stress);
-  begin_response(c.state.loading.window_load, c.state);
 }
 
 std::optional<LoadRange> CyclicConstantVolume::required_loads(double sigma_v) const
@@ -73,40 +93,14 @@ Conditions CyclicConstantVolume::conditions(const StageFigures &reached) const
       {EndCondition::strain, fmt::format("until.strain = {:g} % ({:.4g} %)", 100 * max_strain, 100 * reached.strain)}};
 }
 
-Verdict CyclicConstantVolume::reached(const StageContext &c, const Observation &seen) const
+std::optional<EndCondition> CyclicConstantVolume::ends(const StageContext &c, const Observation &seen) const
 {
-  Verdict verdict = ConstantVolume::reached(c, seen);
   const UndrainedRecord &record = c.state.undrained;
-  const double direction = sign(c.state.loading.direction);
-  follow_response(load(seen), strain(seen), amplitude(c.state.path.lateral_target[1]), mode(), seen.step, c.state,
-                  verdict);
-  if (direction * load(seen) >= direction * turning_load(c.state))
-    turn(c, seen, verdict);
-  verdict.end.reset();
   if (record.liquefaction && record.reversals >= record.liquefaction->reversals + reversals_after_liquefaction)
-    verdict.end = EndCondition::reversals_after_liquefaction;
-  else if (record.reversals >= 2 * max_cycles)
-    verdict.end = EndCondition::cycles;
-  else if (std::abs(strain(seen)) >= max_strain)
-    verdict.end = EndCondition::strain;
-  return verdict;
-}
-
-void CyclicConstantVolume::turn(const StageContext &c, const Observation &seen, Verdict &verdict) const
-{
-  const double now = load(seen);
-  DriveState &state = c.state;
-  UndrainedRecord &record = state.undrained;
-  record.worst_overshoot =
-      std::max(record.worst_overshoot, sign(state.loading.direction) * (now - turning_load(state)));
-  record.reversals += 1;
-  state.loading.direction = opposite(state.loading.direction);
-  turn_response(now, state);
-  load_from_rest(c, now);
-  verdict.notable = true;
-  verdict.event =
-      fmt::format("reversal {} at step {}: {} {:.4g} %, p' {:.2f} kPa, {} {:.2f} kPa", record.reversals, seen.step,
-                  mode().strain_name, 100 * strain(seen), seen.p / 1e3, mode().load_name, now / 1e3);
+    return EndCondition::reversals_after_liquefaction;
+  if (record.reversals >= 2 * max_cycles)
+    return EndCondition::cycles;
+  return std::abs(strain(seen)) >= max_strain ? std::optional(EndCondition::strain) : std::nullopt;
 }
 
 std::optional<double> CyclicConstantVolume::fraction_done(const DriveState &state) const

@@ -5,36 +5,35 @@
 
 namespace isostat
 {
-/// From where on a specimen counts as liquefied; of stages that keep the volume.
-class LiquefactionLimit
+/// A stage that may keep the volume and may turn. If it keeps the volume, the state notes the largest driven strain
+/// before initial liquefaction, and liquefaction (p'/p0 below `liquefaction_ratio`) with step, reversals and an event.
+class LiquefiableShear : public ShearStage
 {
 public:
   double liquefaction_ratio = 0.01; ///< p'/p0 below which the specimen counts as liquefied [-]
 
-  virtual ~LiquefactionLimit() = default;
-  bool operator==(const LiquefactionLimit &) const = default;
-};
+  bool operator==(const LiquefiableShear &) const = default;
 
-/// Notes the largest driven strain before initial liquefaction, and liquefaction with an event.
-/// @param strain  driven, since the start of shearing [-]
-void note_liquefaction(const LiquefactionLimit &limit, const ShearMode &mode, double strain, const Observation &seen,
-                       DriveState &state, Verdict &verdict);
+protected:
+  Verdict reached(const StageContext &c, const Observation &seen) const final;
+  /// Of the load about its mean, Pa; of stages that note their response.
+  virtual double load_amplitude(const DriveState &) const { return 0; }
+
+private:
+  void note_liquefaction(const Observation &seen, DriveState &state, Verdict &verdict) const;
+  void turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const;
+};
 
 /// Constant-volume shear: an undrained test on saturated sand by the constant-volume method. In triaxial shear the
 /// axial rate is r, the lateral one -r/2; in simple shear the rate is that of gamma_xy and nothing else moves.
-/// Liquefaction is p'/p0 below `liquefaction_ratio`; the state notes step, reversals and largest strain before it.
 /// tested: tests/dem/drive/stages/constant_volume_test.cpp, tests/regression/
-class ConstantVolume : public ShearStage, public LiquefactionLimit
+class ConstantVolume : public LiquefiableShear
 {
 public:
   bool operator==(const ConstantVolume &) const = default;
   bool keeps_volume() const final { return true; }
   RigidBox next_box(const StageContext &c, const Observation &seen) const final;
   Mat3 next_gradient(const StageContext &c, const Observation &seen) const final;
-
-protected:
-  /// Notes initial liquefaction.
-  Verdict reached(const StageContext &c, const Observation &seen) const override;
 };
 
 /// Axial strain to an end.
@@ -64,13 +63,12 @@ public:
   double max_strain = 0.15; ///< driven, its amount [-]
 
   bool operator==(const CyclicConstantVolume &) const = default;
-  double inertial_number() const final { return cyclic_inertial_number; }
+  bool turns() const final { return true; }
   std::optional<double> fraction_done(const DriveState &state) const final;
   Conditions conditions(const StageFigures &reached) const final;
   /// With a bias alone: without one a specimen outside turns at once, as it always did.
   std::optional<LoadRange> required_loads(double sigma_v) const final;
   bool notes_response() const final { return true; }
-  void begin_shear(const StageContext &c, const Mat3 &stress) const final;
 
   /// The loads between which it turns, Pa.   @param sigma_v  vertical stress when the stage begins, Pa
   virtual double average(double sigma_v) const = 0;
@@ -79,11 +77,9 @@ public:
   virtual const char *limits_text() const = 0;
 
 protected:
-  Verdict reached(const StageContext &c, const Observation &seen) const final;
+  std::optional<EndCondition> ends(const StageContext &c, const Observation &seen) const final;
   double turning_load(const DriveState &state) const final;
-
-private:
-  void turn(const StageContext &c, const Observation &seen, Verdict &verdict) const;
+  double load_amplitude(const DriveState &state) const final { return amplitude(state.path.lateral_target[1]); }
 };
 
 /// Axial loading between q_av - q_amp and q_av + q_amp.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/path.hpp"
 
-#include "dem/drive/stages/cyclic_response.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -82,7 +80,5 @@ void Path::begin_shear(const StageContext &c, const Mat3 &stress) const
   progress.volume = c.assembly.volume();
   progress.reversals = c.state.undrained.reversals;
   progress.table = table_hash();
-  if (notes_response())
-    begin_response(c.state.loading.window_load, c.state);
 }
 } // namespace isostat

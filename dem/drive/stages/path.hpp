@@ -84,7 +84,7 @@ struct PathTurn
 /// @throws RunFailure  at 100 % of strain with nothing that ends it for sure: no until.strain, no max_steps, and no
 ///         until.cycles of turns at a strain; or not in balance after 2e7 steps
 /// tested: tests/dem/drive/stages/path_test.cpp, tests/verification/path_test.cpp
-class Path : public ShearStage, public LiquefactionLimit
+class Path : public LiquefiableShear
 {
 public:
   std::array<PathComponent, 4> components;
@@ -101,12 +101,11 @@ public:
   bool operator==(const Path &) const = default;
   const char *kind() const override { return "path"; }
   const ShearMode &mode() const override;
-  double inertial_number() const override { return turns() ? cyclic_inertial_number : one_way_inertial_number; }
   bool needs_cell() const override;
   bool shears() const override { return !consolidation; }
   bool drives() const override { return true; }
   bool is_driven(std::size_t k) const { return static_cast<std::size_t>(drive) == k + 1; }
-  bool turns() const { return turn.strain > 0 || turn.high || turn.low; }
+  bool turns() const override { return turn.strain > 0 || turn.high || turn.low; }
   double planned_strain() const override { return turns() ? 0 : end.strain; }
   KeptStresses kept_stresses(const StageContext &c) const override;
   /// p', where a target follows the measured stress of another axis (conditions p and b) and has its scatter.
@@ -145,12 +144,13 @@ public:
   bool keeps_volume() const override;
 
 protected:
-  Verdict reached(const StageContext &c, const Observation &seen) const override;
+  /// @throws InputError  the table is not the one that the stage began with
+  std::optional<EndCondition> ends(const StageContext &c, const Observation &seen) const override;
+  double load_amplitude(const DriveState &) const override { return (*turn.high - *turn.low) / 2; }
   double turning_load(const DriveState &state) const override;
   double turning_strain(const DriveState &state) const override;
 
 private:
-  void turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const;
   std::uint64_t table_hash() const { return table(), read_.hash; }
   std::array<double, 4> prescribed_steps(const StageContext &c, const Observation &seen) const;
   /// Strains of an increment of a static drive.
@@ -172,4 +172,7 @@ private:
     bool operator==(const Read &) const { return true; }
   } read_;
 };
+
+/// The keys that a path alone has.   tested: tests/dem/scene/scene_test.cpp
+SceneFragment<Path> path_keys();
 } // namespace isostat

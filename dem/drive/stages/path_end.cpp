@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where a path turns and ends, how far it has come, and what it says when it does not get there.
 #include "base/error.hpp"
-#include "dem/drive/stages/cyclic_response.hpp"
 #include "dem/drive/stages/path.hpp"
 #include "dem/drive/stages/stage_end.hpp"
 #include "dem/measure/stress.hpp"
@@ -67,29 +66,6 @@ bool at_rest(const Path &path, const StageContext &c)
   return checks >= 2;
 }
 
-std::optional<EndCondition> ends(const Path &path, const StageContext &c, const Observation &seen)
-{
-  const PathProgress &progress = c.state.progress;
-  const StressInvariants start = invariants(Vec3(-progress.stress));
-  const double near = start_tolerance * start.p;
-  if (path.end.strain > 0 && std::abs(c.state.loading.strain) >= path.end.strain)
-    return EndCondition::strain;
-  if (passed(path.end.q, start.q, seen.q, near))
-    return EndCondition::q;
-  if (passed(path.end.p, start.p, seen.p, near))
-    return EndCondition::p;
-  if (passed(path.end.stress_ratio, ratio_of(start.q, start.p), ratio_of(seen.q, seen.p), start_tolerance))
-    return EndCondition::stress_ratio;
-  if (path.end.volumetric_strain > 0 && volumetric_strain(c) >= path.end.volumetric_strain)
-    return EndCondition::volumetric_strain;
-  if (path.end.cycles > 0 && c.state.undrained.reversals >= progress.reversals + 2 * path.end.cycles)
-    return EndCondition::cycles;
-  const PathTable &knots = path.table();
-  const bool walked = knots.at.empty() || progress.place >= knots.at.back();
-  const bool over = path.drive == DrivenComponent::none && walked && at_rest(path, c);
-  return over ? std::optional(EndCondition::course) : std::nullopt;
-}
-
 void fail_if_hopeless(const Path &path, const StageContext &c, const Observation &seen)
 {
   const bool cycles_end = path.end.cycles > 0 && path.turn.strain > 0; // a load may never be reached
@@ -103,43 +79,33 @@ void fail_if_hopeless(const Path &path, const StageContext &c, const Observation
 }
 } // namespace
 
-void Path::turn_round(const StageContext &c, const Observation &seen, Verdict &verdict) const
+std::optional<EndCondition> Path::ends(const StageContext &c, const Observation &seen) const
 {
-  DriveState &state = c.state;
-  const double now = load(seen), over = sign(state.loading.direction) * (now - turning_load(state));
-  if (std::isfinite(over))
-    state.undrained.worst_overshoot = std::max(state.undrained.worst_overshoot, over);
-  state.undrained.reversals += 1;
-  state.loading.direction = opposite(state.loading.direction);
-  if (notes_response())
-    turn_response(now, state, over >= 0);
-  load_from_rest(c, now);
-  verdict.notable = true;
-  verdict.event =
-      fmt::format("reversal {} at step {}: driven strain {:.4g} %, p' {:.2f} kPa, load {:.2f} kPa",
-                  state.undrained.reversals, seen.step, 100 * state.loading.strain, seen.p / 1e3, now / 1e3);
-}
-
-Verdict Path::reached(const StageContext &c, const Observation &seen) const
-{
-  Verdict verdict;
-  if (c.state.progress.table != table_hash())
+  const PathProgress &progress = c.state.progress;
+  if (progress.table != table_hash())
     throw InputError(
         fmt::format("stage {} (path): the table {} is not the one that the stage began with. Put that one back, "
                     "or start anew with --overwrite.",
                     c.state.place.stage, file));
-  if (shears() && keeps_volume())
-    note_liquefaction(*this, mode(), strain(seen), seen, c.state, verdict);
-  if (notes_response())
-    follow_response(load(seen), strain(seen), (*turn.high - *turn.low) / 2, mode(), seen.step, c.state, verdict);
-  const double direction = sign(c.state.loading.direction);
-  if (turns() && (direction * load(seen) >= direction * turning_load(c.state) ||
-                  direction * c.state.loading.strain >= direction * turning_strain(c.state)))
-    turn_round(c, seen, verdict);
-  verdict.end = ends(*this, c, seen);
-  if (!verdict.end)
-    fail_if_hopeless(*this, c, seen);
-  return verdict;
+  const StressInvariants start = invariants(Vec3(-progress.stress));
+  const double near = start_tolerance * start.p;
+  if (end.strain > 0 && std::abs(c.state.loading.strain) >= end.strain)
+    return EndCondition::strain;
+  if (passed(end.q, start.q, seen.q, near))
+    return EndCondition::q;
+  if (passed(end.p, start.p, seen.p, near))
+    return EndCondition::p;
+  if (passed(end.stress_ratio, ratio_of(start.q, start.p), ratio_of(seen.q, seen.p), start_tolerance))
+    return EndCondition::stress_ratio;
+  if (end.volumetric_strain > 0 && volumetric_strain(c) >= end.volumetric_strain)
+    return EndCondition::volumetric_strain;
+  if (end.cycles > 0 && c.state.undrained.reversals >= progress.reversals + 2 * end.cycles)
+    return EndCondition::cycles;
+  const bool walked = table().at.empty() || progress.place >= table().at.back();
+  if (drive == DrivenComponent::none && walked && at_rest(*this, c))
+    return EndCondition::course;
+  fail_if_hopeless(*this, c, seen);
+  return std::nullopt;
 }
 
 StageFigures Path::figures(const StageContext &c, const Observation &seen) const

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "dem/drive/rate_control.hpp"
 #include "dem/drive/servo.hpp"
+#include "dem/drive/stages/cyclic_response.hpp"
 #include "dem/measure/stiffness.hpp"
 #include "dem/measure/stress.hpp"
 
@@ -70,6 +71,16 @@ const ShearMode simple_shear_mode{
 
 void ShearStage::begin(const StageContext &c) const { c.state.loading.direction = direction; }
 
+MotionSpec ShearStage::motion_in_force(const MotionSpec &scene) const
+{
+  MotionSpec motion = scene;
+  if (strain_rate)
+    motion.strain_rate = strain_rate;
+  if (!motion.inertial_number)
+    motion.inertial_number = turns() ? cyclic_inertial_number : one_way_inertial_number;
+  return motion;
+}
+
 void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
 {
   PathState &path = c.state.path;
@@ -83,13 +94,15 @@ void ShearStage::begin_shear(const StageContext &c, const Mat3 &stress) const
   if (c.drive.on)
     c.state.pace = {.rate = c.drive.increment, .time_step = 1, .indicator = c.state.pace.indicator};
   else
-    set_bounds(c.motion, {strain_rate, inertial_number()}, c.assembly, path.start ? path.p0() : now.p, c.state.pace);
+    set_bounds(motion_in_force(c.motion), c.assembly, path.start ? path.p0() : now.p, c.state.pace);
   path.lateral_target = -stress.diagonal();
   if (const bool vertical = &mode() == &simple_shear_mode; shears() && keeps_volume() && !path.undrained)
     path.undrained = UndrainedStart{vertical ? path.lateral_target[1] : now.p, vertical};
   load_from_rest(c, load({.p = now.p, .q = now.q, .axial = 0, .step = 0, .tau = stress(0, 1)}));
   if (const std::string why = refusal(c.state.loading.window_load, path.lateral_target[1], now.p); !why.empty())
     throw InputError(fmt::format("stage {} ({}): {}", c.state.place.stage, kind(), why));
+  if (notes_response())
+    begin_response(c.state.loading.window_load, c.state);
 }
 
 std::string ShearStage::refusal(double load, double sigma_v, double pressure) const
@@ -185,10 +198,9 @@ std::optional<double> ShearStage::fraction_done(const DriveState &state) const
   return strain_end > 0 ? std::optional(std::abs(state.loading.strain) / strain_end) : std::nullopt;
 }
 
-Verdict ShearStage::reached(const StageContext &c, const Observation &) const
+std::optional<EndCondition> ShearStage::ends(const StageContext &c, const Observation &) const
 {
-  const bool there = std::abs(c.state.loading.strain) >= strain_end;
-  return {.end = there ? std::optional(EndCondition::strain) : std::nullopt};
+  return std::abs(c.state.loading.strain) >= strain_end ? std::optional(EndCondition::strain) : std::nullopt;
 }
 
 Vec3 ServoedShear::static_step(const StageContext &c, const Observation &seen) const

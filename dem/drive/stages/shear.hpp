@@ -39,8 +39,9 @@ public:
 
   bool operator==(const ShearStage &) const = default;
   virtual const ShearMode &mode() const { return triaxial_mode; }
-  /// Where the motion names none [-].
-  virtual double inertial_number() const { return one_way_inertial_number; }
+  virtual bool turns() const { return false; } ///< it loads to and fro
+  /// The motion in force: what the stage says, else what the scene does, else what suits stages of its kind.
+  MotionSpec motion_in_force(const MotionSpec &scene) const;
   bool needs_cell() const override { return mode().needs_cell; }
   bool shears() const override { return true; }
   void begin(const StageContext &c) const override;
@@ -86,7 +87,8 @@ protected:
   static double ramp_time(const StageContext &c);
   static constexpr double servo_rate_factor =
       4; ///< axes that follow a stress may move so much faster than the driven one
-  Verdict reached(const StageContext &c, const Observation &) const override;
+  Verdict reached(const StageContext &c, const Observation &seen) const override { return {.end = ends(c, seen)}; }
+  virtual std::optional<EndCondition> ends(const StageContext &c, const Observation &seen) const;
 };
 
 /// Triaxial shear with lateral stresses that a servo keeps on a target.

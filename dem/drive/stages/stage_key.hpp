@@ -16,15 +16,6 @@ constexpr unsigned kinds_of(const std::variant<Kinds...> *)
 template <class... Family>
 constexpr unsigned kinds_in = (kinds_of<Family>(static_cast<const Stage *>(nullptr)) | ...);
 
-template <auto setting>
-struct InStage;
-template <class Part, class T, T Part::*setting>
-struct InStage<setting>
-{
-  static constexpr unsigned kinds = kinds_in<Part>;
-  Field operator()(StageBehaviour &stage) const { return &(dynamic_cast<Part &>(stage).*setting); }
-};
-
 /// The key of a setting. It belongs to the kinds given, or else to all that inherit the setting.
 template <auto setting, class... Kinds>
 constexpr Key of(Key key)
@@ -32,8 +23,8 @@ constexpr Key of(Key key)
   if constexpr (sizeof...(Kinds) > 0)
     key.kinds = kinds_in<Kinds...>;
   else
-    key.kinds = InStage<setting>::kinds;
-  key.field = InStage<setting>{};
+    key.kinds = kinds_in<typename detail::Member<setting>::Struct>;
+  key.field = member<setting>;
   return key;
 }
 } // namespace isostat

@@ -35,8 +35,8 @@ Family *as(Stage &stage)
 /// tested: tests/dem/drive/stages/repeat_test.cpp
 std::vector<std::size_t> order_of(const std::vector<Stage> &stages);
 
-/// Words of the kinds in a scene, in the order of `Stage`.
-std::span<const char *const> stage_kind_names();
+/// One of each kind with its defaults, in the order of `Stage`.
+std::span<const Stage> stage_kinds();
 /// Keys of all kinds below [[stage]] but the kind itself.   tested: tests/dem/scene/scene_test.cpp
 SceneFragment<StageBehaviour> stage_keys();
 } // namespace isostat

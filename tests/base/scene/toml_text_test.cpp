@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/scene/toml_text.hpp"
 
-#include "base/error.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -13,15 +13,7 @@ namespace
 {
 std::string complaint(const std::string &text)
 {
-  try
-    {
-      parse_toml(text, "file.toml");
-      return "accepted";
-    }
-  catch (const InputError &error)
-    {
-      return error.what();
-    }
+  return test::refusal([&] { parse_toml(text, "file.toml"); });
 }
 } // namespace
 

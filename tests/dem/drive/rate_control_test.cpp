@@ -100,47 +100,47 @@ TEST(Slope, IsExpectedUntilTheFirstWindowIsFull)
     }
 }
 
-constexpr StageRate of_cyclic_stage{.inertial_number = 3e-4};
-
 TEST(StrainRate, IsThatOfTheStageOfTheMotionOrOfTheInertialNumber)
 {
   const Assembly assembly(test::specimen(500, 10));
   MotionSpec motion;
+  UndrainedCyclic stage;
+  const auto rate = [&](double p0) { return strain_rate(stage.motion_in_force(motion), assembly, p0); };
   const auto number = [&](double p0) {
-    return inertial_number(strain_rate(motion, of_cyclic_stage, assembly, p0), assembly.d50(),
-                           assembly.packing().density, p0);
+    return inertial_number(rate(p0), assembly.d50(), assembly.packing().density, p0);
   };
-  EXPECT_CLOSE_BECAUSE(number(200e3), 3e-4, 1e-14, "round-off of a root and its square");
+  EXPECT_CLOSE_BECAUSE(number(200e3), cyclic_inertial_number, 1e-14, "round-off of a root and its square");
+  EXPECT_EQ(*UndrainedMonotonic().motion_in_force(motion).inertial_number, one_way_inertial_number);
   for (const double wanted : {5e-4, 1e-6})
     for (const double p0 : {200e3, 5e3})
       {
         motion.inertial_number = wanted;
         EXPECT_CLOSE_BECAUSE(number(p0), wanted, 1e-14, "round-off of a root and its square");
       }
-  EXPECT_THROW(strain_rate(motion, of_cyclic_stage, assembly, 0), RunFailure);
+  EXPECT_THROW(rate(0), RunFailure);
   motion.strain_rate = 0.7;
-  EXPECT_EQ(strain_rate(motion, of_cyclic_stage, assembly, 0), 0.7);
-  EXPECT_EQ(strain_rate(motion, of_cyclic_stage, assembly, 200e3), 0.7);
-  EXPECT_EQ(strain_rate(motion, {0.3, 3e-4}, assembly, 200e3), 0.3);
+  EXPECT_EQ(rate(0), 0.7);
+  EXPECT_EQ(rate(200e3), 0.7);
+  stage.strain_rate = 0.3;
+  EXPECT_EQ(rate(200e3), 0.3);
 }
 
 TEST(LoadRate, IsTheShareOfP0ThatAWaveTimeAllows)
 {
   const Assembly assembly(test::specimen(500, 10));
-  const auto load_rate = [&](const MotionSpec &motion, const StageRate &stage) {
+  const auto load_rate = [&](const MotionSpec &motion) {
     Pace pace;
-    set_bounds(motion, stage, assembly, 200e3, pace);
-    EXPECT_EQ(pace.rate, strain_rate(motion, stage, assembly, 200e3));
+    set_bounds(motion, assembly, 200e3, pace);
+    EXPECT_EQ(pace.rate, strain_rate(motion, assembly, 200e3));
     return pace.load_rate;
   };
   const double edge = assembly.box().edges().maxCoeff(), density = assembly.packing().density;
   const double wave = wave_time(assembly, 200e3);
   EXPECT_CLOSE_BECAUSE(wave, edge * std::sqrt(density / assembly.law()->young), 1e-14, "round-off");
   const MotionSpec motion{.load_per_wave = 0.05};
-  EXPECT_CLOSE_BECAUSE(load_rate(motion, of_cyclic_stage) * wave, 0.05 * 200e3, 1e-14, "round-off");
-  EXPECT_EQ(load_rate({.load_per_wave = 0}, of_cyclic_stage), 0);
-  EXPECT_EQ(load_rate({.strain_rate = 0.7}, of_cyclic_stage), 0) << "a fixed rate stays what it is";
-  EXPECT_EQ(load_rate(motion, {0.3, 3e-4}), 0);
+  EXPECT_CLOSE_BECAUSE(load_rate(motion) * wave, 0.05 * 200e3, 1e-14, "round-off");
+  EXPECT_EQ(load_rate({.load_per_wave = 0}), 0);
+  EXPECT_EQ(load_rate({.strain_rate = 0.7}), 0) << "a fixed rate stays what it is";
 }
 
 TEST(BoundedRate, IsLowWhereThePackingIsStiff)

@@ -76,7 +76,7 @@ TEST(Rve, BytesGoOnAtTheRateThatTheyAreGiven)
 {
   const std::vector<std::byte> bytes = Rve(specimen(), {}).pack();
   RveSettings slow;
-  slow.motion.inertial_number = StageRate().inertial_number / 10;
+  slow.motion.inertial_number = controlled_inertial_number / 10;
   Rve usual = Rve::unpack(bytes, {}), slower = Rve::unpack(bytes, slow);
   const std::uint64_t steps = usual.advance(simple_shear(1e-4)).steps;
   EXPECT_NEAR_BECAUSE(static_cast<double>(slower.advance(simple_shear(1e-4)).steps) / static_cast<double>(steps), 10.0,

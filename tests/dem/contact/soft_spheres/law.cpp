@@ -47,19 +47,17 @@ namespace test
 namespace
 {
 constexpr Key keys_of_law[] = {{.path = "young",
-                                .kind = Kind::quantity,
-                                .dimension = Dimension::pressure,
-                                .unit = "GPa",
+                                .field = member<&SoftSpheres::young>,
+                                .unit = unit::GPa,
                                 .value = "10 GPa",
                                 .range = {0, 1e15, true},
-                                .text = "Modulus of the material.",
-                                .field = law_field<&SoftSpheres::young>},
+                                .text = "Modulus of the material."},
                                {.path = "softness",
+                                .field = member<&SoftSpheres::softness>,
                                 .value = "0.1",
                                 .range = {0, 1, true},
                                 .reason = "because no sphere is stiffer than its material",
-                                .text = "Modulus of the contact over that of the material.",
-                                .field = law_field<&SoftSpheres::softness>}};
+                                .text = "Modulus of the contact over that of the material."}};
 } // namespace
 
 std::span<const Key> SoftSpheres::keys() const { return keys_of_law; }

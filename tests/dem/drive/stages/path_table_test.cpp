@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem/drive/stages/path_table.hpp"
 
-#include "base/error.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <fstream>
@@ -21,15 +21,7 @@ protected:
   }
   std::string complaint(const std::string &text)
   {
-    try
-      {
-        read(text);
-        return "none";
-      }
-    catch (const InputError &error)
-      {
-        return error.what();
-      }
+    return test::refusal([&] { read(text); });
   }
 };
 
