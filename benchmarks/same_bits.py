@@ -108,27 +108,32 @@ RUNS = {
     "column, grains, undrained, two ranks": ("mpirun", "soil_column", COLUMNS / "undrained.toml"),
     "column, grains, u-p": ("soil_column", COLUMNS / "drained.toml"),
     "column, grains, layered, two ranks": ("mpirun", "soil_column", COLUMNS / "layered.toml"),
-    "biaxial, Iwan": ("biaxial", SCENES / "biaxial/iwan.toml", "--set", "test.axial_strain=0.002",
-                      "--set", "test.steps=4"),
-    "biaxial, grains": ("biaxial", "{work}/block.toml"),
+    "biaxial, Iwan": ("soil_column", SCENES / "biaxial/iwan.toml", "--set", "analysis.axial_strain=0.002",
+                      "--set", "analysis.load_steps=4"),
+    "biaxial, grains": ("soil_column", "{work}/block.toml"),
 }
 
 BLOCK = """title = "two elements of grains"
 [mesh]
+dimension = 2
 cells_across = 1
-cells_up = 2
-[soil]
+degree = 1
+[water]
+drainage = "dry"
+[[layer]]
+thickness = "2 m"
+cells = 2
 material = "grains"
-library = "{columns}/specimens.h5"
 relative_density = 0.5
+[grains]
+library = "{columns}/specimens.h5"
 inertial_number = 1e-3
-[test]
+[analysis]
+kind = "biaxial"
 confinement = "50 kPa"
 axial_strain = 0.002
-steps = 2
-[newton]
+load_steps = 2
 tolerance = 0.01
-[output]
 map_every = 1
 """
 

@@ -20,7 +20,7 @@ inside sh -c 'apt-get update -q && apt-get install -q -y --no-install-recommends
 start=$SECONDS
 inside sh -c 'cd /root && python3 /packages/drained.py'
 echo "drained test run and drawn: $((SECONDS - start)) s"
-for program in isostat element_test soil_column micromechanics void_ratio_limits biaxial; do
+for program in isostat element_test soil_column micromechanics void_ratio_limits; do
   inside "$program" --version
   [[ -s $root/usr/share/man/man1/$program.1.gz || -n "${NO_MANUALS:-}" ]]
 done

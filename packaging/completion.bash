@@ -13,4 +13,4 @@ _isostat() {
   mapfile -t COMPREPLY < <(compgen -W "${options:-}" -- "$word")
   ((${#COMPREPLY[@]})) || compopt -o default
 }
-complete -F _isostat isostat element_test void_ratio_limits micromechanics soil_column rve_replay biaxial
+complete -F _isostat isostat element_test void_ratio_limits micromechanics soil_column rve_replay

@@ -10,7 +10,7 @@ scripts/setup.sh
 cmake --preset release
 # All programs: the commands that the README names next are there, too.
 cmake --build --preset release --parallel "$(nproc)" --target element_test soil_column isostat \
-  micromechanics rve_replay void_ratio_limits biaxial
+  micromechanics rve_replay void_ratio_limits
 build/release/bin/element_test apps/scenes/quick_cyclic_liquefies.toml --output "$results" --overwrite
 
 # The application draws its own figures; draw them here if it could not.

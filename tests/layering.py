@@ -92,7 +92,6 @@ INNER = {
         "void_ratio_limits": {"common"},
         "soil_column": {"common", "deposit"},
         "rve_replay": {"common", "deposit"},
-        "biaxial": {"common", "deposit"},
     },
     "python": {"binding": set()},
 }

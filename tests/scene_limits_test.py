@@ -6,7 +6,7 @@ import unittest
 from support import ROOT
 
 SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.cpp", "apps/deposit/plate.cpp",
-           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/biaxial/scene.cpp",
+           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/deposit/biaxial.cpp",
            "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp", "fem/material/mohr_coulomb_scene.cpp",
            "fem/solve/newton_scene.cpp")
 # The key of a refusal: "mesh.degree", prefix + ".density", fmt::format("stage.{}.friction", i), key("lot"), and the
@@ -46,12 +46,9 @@ STATED = {
         "analysis.kind": "A consolidation needs", "analysis.last_time": "After `first_time`",
         "analysis.duration": "At most 1e15 time steps", "analysis.from": "on a boundary between elements",
         "analysis.to": "likewise", "analysis.displacement": "less than the extent of the soil",
-        "analysis.max_iterations": "0: relaxation alone", "output.depths": "Within the soil",
+        "analysis.max_iterations": "0: relaxation alone", "analysis.nonlocal.length": "needs max_iterations = 0",
+        "analysis.weak.cells": "The square lies in the block", "output.depths": "Within the soil",
         "output.profile_interval": "", "output.x": "Of a strip"},
-    "biaxial_scene": {
-        "water.drainage": "degree 2 with 3 points", "water.permeability": "undrained block",
-        "nonlocal.length": "needs newton.max_iterations = 0", "weak.cells": "The square lies in the block",
-        "weak.column": "", "weak.row": "", "mesh.degree": "", "mesh.points": "leaves modes without stiffness"},
 }
 WHOLE_SECTIONS = {"motion", "grains"}  # a table that is refused, not a key
 

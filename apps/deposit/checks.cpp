@@ -6,6 +6,7 @@
 #include "coupling/scene/packings.hpp"
 #include "fem/material/iwan_scene.hpp"
 #include "fem/material/mohr_coulomb_scene.hpp"
+#include "fem/solve/newton_scene.hpp"
 #include "fem/water/pore_fluid.hpp"
 
 #include <fmt/format.h>
@@ -140,6 +141,8 @@ void check_motions(const SceneDocument &document, const ColumnScene &scene)
 
 void check_analysis(const SceneDocument &document, const ColumnScene &scene)
 {
+  if (scene.analysis.kind == AnalysisKind::plate || scene.analysis.kind == AnalysisKind::biaxial)
+    check_newton(document, "analysis", scene.load_steps.newton);
   if (scene.analysis.kind != AnalysisKind::consolidation)
     return;
   if (scene.water.drainage != Drainage::coupled)
@@ -201,6 +204,7 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
   check_mesh(document, scene);
   check_box(document, scene);
   check_plate(document, scene);
+  check_biaxial(document, scene);
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
     check_layer(document, scene, i);
   check_air(document, scene);

@@ -23,14 +23,6 @@ namespace
 /// The columns of a profile among those of Micromechanics, the redundancy index first and what it counts last.
 constexpr const char *profile_columns[] = {"IR", "Z", "F_yx", "f_S", "f_R", "f_SR", "IR_constraints"};
 
-std::size_t column_number(const std::string &name)
-{
-  const auto &columns = Micromechanics::columns();
-  return static_cast<std::size_t>(
-      std::find_if(columns.begin(), columns.end(), [&](const auto &column) { return column.first == name; }) -
-      columns.begin());
-}
-
 std::vector<std::size_t> counted_to(std::size_t n)
 {
   std::vector<std::size_t> numbers(n);
@@ -38,6 +30,14 @@ std::vector<std::size_t> counted_to(std::size_t n)
   return numbers;
 }
 } // namespace
+
+std::size_t column_number(const std::string &name)
+{
+  const auto &columns = Micromechanics::columns();
+  return static_cast<std::size_t>(
+      std::find_if(columns.begin(), columns.end(), [&](const auto &column) { return column.first == name; }) -
+      columns.begin());
+}
 
 GrainFiles::GrainFiles(fs::path folder, const ColumnScene &scene, const SoilMaterial &soil,
                        const FiniteElementSpace &space, const ColumnCheckpoint *resumed)
@@ -104,14 +104,13 @@ void GrainFiles::open(const ColumnCheckpoint *resumed)
   });
 }
 
-/// Micromechanics of the first packing of some points, one after the other, on every rank.
-std::vector<double> GrainFiles::measured(const std::vector<std::size_t> &points) const
+std::vector<double> measured(const RveMaterial &grains, const std::vector<std::size_t> &points)
 {
   const std::size_t width = Micromechanics::columns().size();
   std::vector<double> values(points.size() * width, 0.0);
   together([&] {
     for (std::size_t k = 0; k < points.size(); ++k)
-      if (const Rve *element = grains_.element(points[k]))
+      if (const Rve *element = grains.element(points[k]))
         {
           const std::vector<double> row = micromechanics(element->snapshot()).row();
           std::copy(row.begin(), row.end(), values.begin() + static_cast<std::ptrdiff_t>(k * width));
@@ -125,7 +124,7 @@ std::vector<double> GrainFiles::measured(const std::vector<std::size_t> &points)
 std::vector<double> GrainFiles::append(Table &table, std::uint64_t step, double time) const
 {
   const std::size_t width = Micromechanics::columns().size();
-  const std::vector<double> values = measured(table.points);
+  const std::vector<double> values = measured(grains_, table.points);
   std::vector<double> row = {static_cast<double>(step), time};
   for (std::size_t k = 0; k < table.points.size(); ++k)
     {

@@ -9,6 +9,12 @@
 
 namespace isostat
 {
+/// Micromechanics of the first packing of some points, one after the other, on every rank: for each a row of
+/// Micromechanics::columns().   Collective.
+std::vector<double> measured(const RveMaterial &grains, const std::vector<std::size_t> &points);
+/// The place of a column among those.
+std::size_t column_number(const std::string &name);
+
 /// What the packings of a column leave in its folder: grain_history/history.csv and .h5, the micromechanics of the
 /// first packing of the points nearest to output.depths (columns as in the element tests' history, prefix d0_, d1_ ...;
 /// `depths` of summary.json says where); grain_profiles/history.csv and .h5, redundancy index, coordination number and
@@ -60,7 +66,6 @@ private:
   };
   void open(Table &table, const char *folder, std::size_t resume_rows) const;
   std::vector<double> append(Table &table, std::uint64_t step, double time) const;
-  std::vector<double> measured(const std::vector<std::size_t> &points) const;
   void write_packings(double time);
   std::filesystem::path path_folder(std::size_t k) const;
 

@@ -11,8 +11,7 @@ void copy(const Vector &from, std::vector<double> &to)
 }
 } // namespace
 
-template <int dim>
-void gradients_of(const Discretisation<dim> &space, const Vector &displacement, std::vector<Gradient> &gradients)
+void gradients_of(const FiniteElementSpace &space, const Vector &displacement, std::vector<Gradient> &gradients)
 {
   gradients.resize(space.n_points());
   if (!space.shared_out())
@@ -25,8 +24,7 @@ void gradients_of(const Discretisation<dim> &space, const Vector &displacement, 
   space.gradients(whole, gradients);
 }
 
-template <int dim>
-void observe_step(Dynamics &run, const Discretisation<dim> &space, ColumnInstant &instant)
+void observe_step(Dynamics &run, const FiniteElementSpace &space, ColumnInstant &instant)
 {
   const bool pressure_comes_later = run.settings().drainage == Drainage::coupled;
   instant.step = run.n_steps();
@@ -46,12 +44,4 @@ void observe_step(Dynamics &run, const Discretisation<dim> &space, ColumnInstant
       instant.velocity[i] = (instant.velocity[i] + run.velocity().local_element(i)) / 2;
   instant.energy = run.energy();
 }
-
-#define ISOSTAT_INSTANTIATE(dim) \
-  template void gradients_of<dim>(const Discretisation<dim> &, const Vector &, std::vector<Gradient> &); \
-  template void observe_step<dim>(Dynamics &, const Discretisation<dim> &, ColumnInstant &);
-ISOSTAT_INSTANTIATE(1)
-ISOSTAT_INSTANTIATE(2)
-ISOSTAT_INSTANTIATE(3)
-#undef ISOSTAT_INSTANTIATE
 } // namespace isostat

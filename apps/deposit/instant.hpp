@@ -22,10 +22,8 @@ struct ColumnInstant
 /// t_n is the mean of those half a step before and after, at the start the given one. Collective.
 /// @throws RunFailure from Dynamics::step()
 /// tested: tests/apps/soil_column_test.py
-template <int dim>
-void observe_step(Dynamics &run, const Discretisation<dim> &space, ColumnInstant &instant);
+void observe_step(Dynamics &run, const FiniteElementSpace &space, ColumnInstant &instant);
 
 /// Displacement gradients at the points of a vector of displacements, whatever its ghosts hold.
-template <int dim>
-void gradients_of(const Discretisation<dim> &space, const Vector &displacement, std::vector<Gradient> &gradients);
+void gradients_of(const FiniteElementSpace &space, const Vector &displacement, std::vector<Gradient> &gradients);
 } // namespace isostat

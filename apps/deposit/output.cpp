@@ -26,8 +26,7 @@ std::vector<double> columns_at(const ColumnInstant &instant, std::span<const std
   return values;
 }
 
-template <int dim>
-void write_column_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, const ColumnInstant &instant,
+void write_column_vtu(const std::filesystem::path &path, const FiniteElementSpace &space, const ColumnInstant &instant,
                       std::span<const double> vertical_stress)
 {
   std::vector<PointField> fields;
@@ -63,11 +62,4 @@ SeriesLayout profile_layout(std::vector<double> depths, std::vector<double> sigm
                       {"shear_velocity", "m/s", std::move(shear_velocity)}};
   return layout;
 }
-
-template void write_column_vtu<1>(const std::filesystem::path &, const Discretisation<1> &, const ColumnInstant &,
-                                  std::span<const double>);
-template void write_column_vtu<2>(const std::filesystem::path &, const Discretisation<2> &, const ColumnInstant &,
-                                  std::span<const double>);
-template void write_column_vtu<3>(const std::filesystem::path &, const Discretisation<3> &, const ColumnInstant &,
-                                  std::span<const double>);
 } // namespace isostat

@@ -35,8 +35,7 @@ std::vector<double> columns_at(const ColumnInstant &instant, std::span<const std
 /// @param vertical_stress  sigma'_v0 of every point, Pa   @pre the mesh is not shared out
 /// @throws RunFailure  the file cannot be written
 /// tested: tests/apps/soil_column_test.py
-template <int dim>
-void write_column_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, const ColumnInstant &instant,
+void write_column_vtu(const std::filesystem::path &path, const FiniteElementSpace &space, const ColumnInstant &instant,
                       std::span<const double> vertical_stress);
 
 /// One coordinate of all places, m.

@@ -32,8 +32,11 @@ constexpr Key of_plate[] = {
            "along it."},
   {.path = "rough", .field = member<&Plate::rough>, .value = "true",
    .text = "Whether the soil sticks to it; false: it slides freely."},
-  {.path = "load_steps", .field = member<&Plate::steps>, .value = "100", .range = counts, .reason = one_or_more,
-   .text = "Number of equal steps of the displacement."},
+};
+
+constexpr Key of_steps[] = {
+  {.path = "load_steps", .field = member<&LoadSteps::number>, .value = "100", .range = counts, .reason = one_or_more,
+   .text = "Number of equal steps of the displacement of the plate or of the top of the block."},
 };
 // clang-format on
 
@@ -46,9 +49,11 @@ double length_of_side(const ColumnScene &scene)
 }
 } // namespace
 
-SceneFragment<Plate> plate_keys()
+SceneFragment<Plate> plate_keys() { return {of_plate}; }
+
+SceneFragment<LoadSteps> load_step_keys()
 {
-  static const KeyTable keys{of_plate, splice<&Plate::newton>("", newton_keys())};
+  static const KeyTable keys{of_steps, splice<&LoadSteps::newton>("", newton_keys())};
   return {keys.keys()};
 }
 
@@ -95,6 +100,5 @@ void check_plate(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("analysis.displacement", fmt::format("must be within +-{} m, the extent of the soil along it; "
                                                          "strains are taken as small.",
                                                          number_text(room)));
-  check_newton(document, "analysis", scene.plate.newton);
 }
 } // namespace isostat

@@ -28,8 +28,6 @@ struct Plate
   std::optional<double> from, to; ///< x on surface and base, z on a wall, m; left out: to the end
   double displacement = 0;        ///< at the end, m: into the soil if positive
   bool rough = true;              ///< the soil does not slide along it
-  unsigned steps = 100;
-  NewtonSettings newton{.tolerance = 1e-6, .max_halvings = 8};
 
   Face face() const
   {
@@ -43,8 +41,18 @@ struct Plate
   bool operator==(const Plate &) const = default;
 };
 
+/// Of an analysis that moves a boundary slowly: that of a plate, or of a biaxial block.
+struct LoadSteps
+{
+  unsigned number = 100;
+  NewtonSettings newton{.tolerance = 1e-6, .max_halvings = 8};
+
+  bool operator==(const LoadSteps &) const = default;
+};
+
 /// The keys of [analysis].
 SceneFragment<Plate> plate_keys();
+SceneFragment<LoadSteps> load_step_keys();
 
 /// The part of the boundary that a plate has.
 Patch plate_patch(const ColumnScene &scene);

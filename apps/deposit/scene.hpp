@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a run of the soil column consists of. Lengths m, stresses Pa, times s, accelerations m/s2, as everywhere inside.
 #pragma once
+#include "apps/deposit/biaxial.hpp"
 #include "apps/deposit/plate.hpp"
 #include "base/scene/fragment.hpp"
 #include "coupling/batch/rve_material_settings.hpp"
@@ -151,10 +152,12 @@ enum class AnalysisKind
 {
   dynamic,
   consolidation,
-  plate
+  plate,
+  biaxial
 };
 
-inline constexpr const char *analysis_names[] = {"dynamic", "consolidation", "plate"}; ///< their words in scenes
+/// Their words in scenes.
+inline constexpr const char *analysis_names[] = {"dynamic", "consolidation", "plate", "biaxial"};
 
 struct ColumnAnalysis
 {
@@ -211,7 +214,9 @@ struct ColumnScene
   RveMaterialSettings grains; ///< as the scene says it; ignored without a layer of grains
   GrainOutput grain_output;   ///< likewise
   ColumnAnalysis analysis;
-  Plate plate; ///< ignored by other kinds of analysis
+  Plate plate;          ///< ignored by other kinds of analysis
+  Biaxial biaxial;      ///< likewise
+  LoadSteps load_steps; ///< of a plate and a biaxial block
   ColumnOutput output;
 
   double height() const; ///< that of soil_profile(), m
@@ -228,7 +233,7 @@ SoilProfile soil_profile(const ColumnScene &scene);
 
 /// The surface of a box that is not level.
 GroundLine ground_line(const ColumnMesh &mesh);
-/// The mesh of a scene, before a consolidation cuts its cells (cut_mesh()); its plate is patch 0.
+/// The mesh of a scene, before a consolidation cuts its cells (deposit_space()); its plate is patch 0.
 MeshSpec mesh_spec(const ColumnScene &scene);
 
 /// The motions along x, y, z: read, corrected and scaled, or sampled. Rest where none is given. They have one clock:

@@ -29,6 +29,7 @@ constexpr unsigned grains = kind_bit(LayerMaterial::grains);
 constexpr unsigned compliant = kind_bit(BaseKind::compliant);
 constexpr unsigned loaded = kind_bit(LoadKind::step) | kind_bit(LoadKind::harmonic);
 constexpr unsigned dynamic = kind_bit(AnalysisKind::dynamic);
+constexpr unsigned slow = kind_bit(AnalysisKind::plate) | kind_bit(AnalysisKind::biaxial);
 constexpr unsigned consolidation = kind_bit(AnalysisKind::consolidation);
 
 // clang-format off
@@ -58,8 +59,9 @@ constexpr Section sections[] = {
    .text = "Packings of grains at the Gauss points of the layers whose material is \"grains\", with the law and rate "
            "control of the element tests."},
   {.name = "analysis",
-   .text = "Waves (dynamic), the slow flow of water out of loaded soil without inertia (consolidation), or a plate that moves "
-           "slowly into a box of soil (plate).",
+   .text = "Waves (dynamic), the slow flow of water out of loaded soil without inertia (consolidation), a plate that moves "
+           "slowly into a box of soil (plate), or a block without weight in plane strain, confined on its sides and "
+           "compressed by its top (biaxial).",
    .kind_key = "kind", .kinds_title = "Analysis kinds"},
   {.name = "output", .text = "What is written, and how often. Output never changes a run."},
 };
@@ -88,7 +90,9 @@ constexpr Key mesh_keys[] = {
 constexpr Key water_keys[] = {
   {.path = "drainage", .field = member<&ColumnWater::drainage>, .value = "coupled", .choices = drainage_names,
    .text = "No water; saturated at constant volume without flow (a column only); or displacement and pore pressure "
-           "coupled (u-p)."},
+           "coupled (u-p). Of a biaxial block dry: no excess pore pressure; coupled: no water leaves it. The sides keep "
+           "their total stress then, axial_stress is total without the pressure at the start, and p and q of maps are "
+           "effective."},
   {.path = "density", .field = member_of<ColumnWater, &ColumnWater::density>, .unit = unit::kg_m3,
    .value = "1000 kg/m3", .range = positive, .text = "Density of the water."},
   {.path = "bulk_modulus", .field = member_of<ColumnWater, &ColumnWater::bulk_modulus>, .unit = unit::GPa,
@@ -208,7 +212,8 @@ constexpr Key grain_output_keys[] = {
 constexpr Key analysis_keys[] = {
   {.path = "kind", .field = member<&ColumnAnalysis::kind>, .value = "dynamic", .choices = analysis_names,
    .text = "What is solved. A consolidation needs water.drainage \"coupled\", a load of kind \"step\", a rigid base "
-           "and no motion; a plate a dry box without motion, load and `mesh.distributed`."},
+           "and no motion; a plate a dry box without motion, load and `mesh.distributed`; a biaxial block dimension 2, "
+           "without them, slope, base, water table, and what is written over the depth."},
   {.path = "duration", .field = member<&ColumnAnalysis::duration>, .unit = unit::s, .presence = Presence::required,
    .value = "20 s", .range = positive, .kinds = dynamic, .text = "End of the run. At most 1e15 time steps."},
   {.path = "time_step", .field = member<&ColumnAnalysis::time_step>, .unit = unit::ms, .presence = Presence::optional,
@@ -284,29 +289,15 @@ constexpr const char *defaults_head =
 constexpr const char *manual_head =
 R"(# Scene reference of the soil column
 
-A scene is one TOML file that describes a run of `soil_column`. This page "
- "is generated from the table in
-`apps/deposit/schema.cpp` (`column_scene_manual()`); a test compares them. Ready "
- "scenes are in `apps/scenes/column`.
+A scene is one TOML file that describes a run of `soil_column`. This page is generated from the table in
+`apps/deposit/schema.cpp` (`column_scene_manual()`); a test compares them. Ready scenes are in `apps/scenes/column`.
 
 - Quantities are text with a unit: `"10 m"`, `"200 m/s"`, `"1e-5 m/s"`, `"0.2 g"`. A bare number, or the
-  unit of "
-                                                                               "something else, is an error. What "
-                                                                               "has no dimension is a plain "
-                                                                               "number.
-- Numbers other than 0 are "
-                                                                               "between 1e-30 and 1e30 in size, in "
-                                                                               "SI units.
-- An unknown key is an "
-                                                                               "error, and so is a repeated key. "
-                                                                               "Compression is positive; z points "
-                                                                               "up, depths count downwards.
-- `--set "
-                                                                               "key=value` on the command line "
-                                                                               "overrides the file: `--set "
-                                                                               "analysis.safety=0.5`,
-  `--set "
-                                                                               "layer.0.thickness="4 m"` (the uppermost layer), `--set motion.0.peak="0.3 g"`. Of keys that exclude each
+  unit of something else, is an error. What has no dimension is a plain number.
+- Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
+- An unknown key is an error, and so is a repeated key. Compression is positive; z points up, depths count downwards.
+- `--set key=value` on the command line overrides the file: `--set analysis.safety=0.5`,
+  `--set layer.0.thickness="4 m"` (the uppermost layer), `--set motion.0.peak="0.3 g"`. Of keys that exclude each
   other, the one set this way replaces the one in the file.
 
 )";
@@ -336,6 +327,8 @@ const SceneSchema &column_schema()
                              splice<&ColumnScene::grain_output>("grains", grain_output_keys),
                              splice<&ColumnScene::analysis>("analysis", analysis_keys),
                              splice<&ColumnScene::plate>("analysis", plate_keys(), kind_bit(AnalysisKind::plate)),
+                             splice<&ColumnScene::biaxial>("analysis", biaxial_keys(), kind_bit(AnalysisKind::biaxial)),
+                             splice<&ColumnScene::load_steps>("analysis", load_step_keys(), slow),
                              splice<&ColumnScene::output>("output", output_keys)};
   static const SceneSchema schema{.keys = keys.keys(),
                                   .sections = sections,

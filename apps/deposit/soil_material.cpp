@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numeric>
 #include <set>
 
 namespace isostat
@@ -15,13 +16,13 @@ namespace isostat
 namespace
 {
 /// A layer without grains at some points with their stress.
-std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, std::size_t layer,
+std::unique_ptr<Material> stressed_layer(const ColumnLayer &soil, std::size_t layer,
                                          const std::vector<std::size_t> &points, const std::vector<Stress> &in_situ,
                                          const UserMaterials &user)
 {
   try
     {
-      auto material = layer_material(scene.layers[layer], points.size(), user);
+      auto material = layer_material(soil, points.size(), user);
       std::vector<Stress> stresses;
       for (std::size_t q : points)
         stresses.push_back(in_situ[q]);
@@ -32,7 +33,7 @@ std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, std::size_t l
     {
       throw InputError(fmt::format("layer.{} ({}): {}. Points count from the lower end of the layer; correct the "
                                    "layer's k0 or its material.",
-                                   layer, scene.layers[layer].name, error.what()));
+                                   layer, soil.name, error.what()));
     }
 }
 
@@ -127,6 +128,48 @@ void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
                                    "\"user\". Correct the name, or the layer's material.",
                                    name));
 }
+
+bool has_weak_zone(const ColumnScene &scene)
+{
+  return scene.analysis.kind == AnalysisKind::biaxial && scene.biaxial.weak.cells > 0;
+}
+
+/// What points are made of: the layers, then what they are in a weak zone.
+std::vector<ColumnLayer> soils_of(const ColumnScene &scene)
+{
+  std::vector<ColumnLayer> soils = scene.layers;
+  if (has_weak_zone(scene))
+    for (const ColumnLayer &layer : scene.layers)
+      soils.push_back(weakened(layer, scene.biaxial.weak));
+  return soils;
+}
+
+/// The points of each of these.
+std::vector<std::vector<std::size_t>> points_of(const ColumnScene &scene, const CellTables &mesh, std::size_t n_soils)
+{
+  std::vector<std::vector<std::size_t>> points(n_soils);
+  for (std::size_t q = 0; q < mesh.n_points(); ++q)
+    {
+      const bool weak = has_weak_zone(scene) && in_weak_zone(scene, mesh.position[q]);
+      points[mesh.cell_layer[q / mesh.points_per_cell()] + (weak ? scene.layers.size() : 0)].push_back(q);
+    }
+  return points;
+}
+
+/// Makes one part of all, which have their stress.
+const Nonlocal &give_length(std::vector<CompositeMaterial::Part> &parts, const NonlocalParameters &parameters,
+                            const CellTables &mesh, const std::vector<Stress> &stresses)
+{
+  std::vector<std::size_t> all(mesh.n_points());
+  std::iota(all.begin(), all.end(), 0);
+  auto nonlocal = std::make_unique<Nonlocal>(std::make_unique<CompositeMaterial>(std::move(parts)), parameters,
+                                             mesh.position, mesh.weight);
+  nonlocal->start_from(stresses);
+  const Nonlocal &result = *nonlocal;
+  parts.clear();
+  parts.push_back({std::move(nonlocal), std::move(all)});
+  return result;
+}
 } // namespace
 
 SpecimenRequest drawn(SpecimenRequest request, const Place &place)
@@ -162,6 +205,11 @@ Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0
 
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh)
 {
+  if (scene.analysis.kind == AnalysisKind::biaxial)
+    {
+      const double p = -scene.biaxial.confinement;
+      return std::vector<Stress>(mesh.n_points(), Stress{p, p, p, 0, 0, 0});
+    }
   if (scene.mesh.sides == Sides::walls)
     return between_walls(scene, mesh);
   const SoilProfile soil = soil_profile(scene);
@@ -176,26 +224,26 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
 {
   check_user_materials(scene, user);
   const std::vector<Stress> in_situ = in_situ_stress(scene, mesh);
-  std::vector<std::vector<std::size_t>> points(scene.layers.size());
-  for (std::size_t q = 0; q < mesh.n_points(); ++q)
-    points[mesh.cell_layer[q / mesh.points_per_cell()]].push_back(q);
+  const std::vector<ColumnLayer> soils = soils_of(scene);
+  const std::vector<std::vector<std::size_t>> points = points_of(scene, mesh, soils.size());
   SoilMaterial soil;
   std::vector<CompositeMaterial::Part> parts;
   std::vector<SpecimenRequest> requests;
   std::vector<std::string> names;
-  std::vector<Stress> stresses;                               ///< of the points with grains
-  for (std::size_t layer = scene.layers.size(); layer-- > 0;) // from the base up, as points count
-    if (scene.layers[layer].material != LayerMaterial::grains)
+  std::vector<Stress> stresses;                        ///< of the points with grains
+  for (std::size_t layer = soils.size(); layer-- > 0;) // from the base up, as points count
+    if (soils[layer].material != LayerMaterial::grains)
       {
         // a part without points has a header all the same: states of all ranks fit together
-        if (!points[layer].empty() || scene.layers[layer].material != LayerMaterial::user)
-          parts.push_back({stressed_layer(scene, layer, points[layer], in_situ, user), points[layer]});
+        if (!points[layer].empty() || soils[layer].material != LayerMaterial::user)
+          parts.push_back(
+              {stressed_layer(soils[layer], layer % scene.layers.size(), points[layer], in_situ, user), points[layer]});
       }
     else
       for (std::size_t q : points[layer])
         {
           soil.grains_places.push_back(q);
-          requests.push_back(drawn(scene.layers[layer].grains, mesh.position[q]));
+          requests.push_back(drawn(soils[layer].grains, mesh.position[q]));
           stresses.push_back(in_situ[q]);
           names.push_back(point_name(scene, mesh, q));
         }
@@ -209,6 +257,8 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
       soil.grains = grains.get();
       parts.push_back({std::move(grains), soil.grains_places});
     }
+  if (scene.analysis.kind == AnalysisKind::biaxial && scene.biaxial.nonlocal.length > 0)
+    soil.nonlocal = &give_length(parts, scene.biaxial.nonlocal, mesh, in_situ);
   soil.material = std::make_unique<TimedMaterial>(std::move(parts));
   return soil;
 }

@@ -5,6 +5,7 @@
 #include "base/stopwatch.hpp"
 #include "coupling/batch/rve_material.hpp"
 #include "fem/material/composite.hpp"
+#include "fem/material/nonlocal.hpp"
 #include "fem/space/tables.hpp"
 
 #include <functional>
@@ -37,6 +38,7 @@ struct SoilMaterial
 {
   std::unique_ptr<TimedMaterial> material;
   const RveMaterial *grains = nullptr;    ///< the part of it that is made of packings; null if there is none
+  const Nonlocal *nonlocal = nullptr;     ///< all of it, if it has a length
   std::vector<std::size_t> grains_places; ///< points of the mesh that have them, in the order of `grains`
   /// Of each of these the seeds of its packings, counted from 0 over those of its density; empty if no layer draws
   /// them.
@@ -46,9 +48,9 @@ struct SoilMaterial
 /// Materials of the user's own by the name of their layer: each call makes one for this many points.
 using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Material>(std::size_t n_points)>>;
 
-/// Materials of all layers for the points of this rank, a part for each layer from the base up, brought to their stress
-/// in situ. All points with grains are one material, whose packings are placed on the ranks together, whatever lies
-/// between the layers.   Collective.
+/// Materials of all layers for the points of this rank, a part for each layer from the base up, the weak zone of a
+/// biaxial block behind them, brought to their stress in situ. All points with grains are one material, whose packings
+/// are placed on the ranks together, whatever lies between the layers.   Collective.
 /// @param user  of the layers whose material is user
 /// @throws InputError  no such specimens; naming the layer, a stress that its material cannot bear, or a user material
 /// that is missing or not asked for
@@ -70,7 +72,7 @@ std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t
 Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0, double z);
 /// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally
 /// K0 times as much. Between walls that is where settle() begins, without a surcharge
-/// on a part of the surface.
+/// on a part of the surface. A biaxial block has its confinement everywhere.
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh);
 
 /// The points of `soil.grains` nearest to some depths on the vertical of the histories (MeshSpec::line).

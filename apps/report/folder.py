@@ -5,7 +5,8 @@ import tomllib
 
 from figures.files import Damaged, read_parsed
 
-# The file with the numbers of a program's summary; it is written last, so a run that has it is finished.
+# The file with the numbers of a program's summary; it is written last, so a run that has it is finished. A biaxial
+# block is a run of soil_column.
 NUMBERS = {"element_test": "summary.json", "soil_column": "summary.json", "biaxial": "summary.json",
            "rve_replay": "summary.json", "resistance": "resistance.json",
            "calibrate": "calibrate.json", "micromechanics": "micromechanics.json",
@@ -89,4 +90,7 @@ def find_results(path):
         reason = f"its provenance.txt names {program}" if program else "it has no provenance.txt with a command"
         raise NoResults(f"{path}: is not a results folder that can be reported ({reason}). Give the folder in which "
                         f"one of these left its results: {', '.join(NUMBERS)}.")
-    return Results(path, program)
+    results = Results(path, program)
+    if program == "soil_column" and results.scene.get("analysis", {}).get("kind") == "biaxial":
+        results.program = "biaxial"
+    return results

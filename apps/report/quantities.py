@@ -43,7 +43,7 @@ SHOWN = {
         "confinement_Pa": "kPa", "axial_strain": "%", "peak_stress_Pa": "kPa", "peak_strain": "%",
         "last_stress_Pa": "kPa", "volumetric_strain": "%", "localisation": "-", "max_strain": "%",
         "max_rotation_deg": "deg", "large_strain_from": "%", "iterations": "-", "trials": "-", "substeps": "-",
-        "rejected": "-", "rve_steps": "-", "nonlocal_length_m": "m", "pore_pressure_Pa": "Pa",
+        "rejected": "-", "nonlocal_length_m": "m", "pore_pressure_Pa": "Pa",
         "nonlocal_stiffness": "-"},
 }
 IN_SI = ("_deg", "_m", "_Pa")  # ends of names that give the unit in the file

@@ -13,7 +13,7 @@ from .quantities import converted, named, shown
 
 REPORT = "report.html"
 KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command continues with what is missing
-RESUMED = ("element_test", "soil_column")  # --resume continues from a checkpoint
+RESUMED = ("element_test", "soil_column", "biaxial")  # --resume continues from a checkpoint
 
 
 def title_of(name):
@@ -37,10 +37,11 @@ def summary_parts(results):
 def calls(results):
     """How to continue with the run, and how to run its scene again: as it was started, from a shell or from Python."""
     function = results.command.split()[0]
+    program = "soil_column" if results.program == "biaxial" else results.program
     if function not in IN_PYTHON:
         command = results.command.replace(" --overwrite", "")
         return (command if "--resume" in command else command + " --resume",
-                f"{results.program} {shlex.quote(str(results.path / 'scene.toml'))} --output results/again")
+                f"{program} {shlex.quote(str(results.path / 'scene.toml'))} --output results/again")
     function, folder = function.removesuffix("()"), json.dumps(results.path.as_posix(), ensure_ascii=False)
     return f"{function}(scene, {folder}, resume=True)", f'{function}(scene, "results/again")'
 

@@ -17,8 +17,7 @@ StaticsSettings settings_of(const ColumnLoad &load, bool pore_water)
 }
 
 /// Of the surface, when all water has left; not-a-number if the soil cannot bear the load.
-template <int dim>
-double final_settlement(const ColumnRequest &request, const Discretisation<dim> &space)
+double final_settlement(const ColumnRequest &request, const FiniteElementSpace &space)
 {
   const ColumnScene &scene = request.scene;
   const SoilMaterial soil = soil_material(scene, space, 1, request.materials);
@@ -38,14 +37,10 @@ double final_settlement(const ColumnRequest &request, const Discretisation<dim> 
   return settlement;
 }
 
-template <int dim>
-class ConsolidationRun : public StaticsRun<dim>
+class ConsolidationRun : public StaticsRun
 {
-  using Run = StaticsRun<dim>;
-  using Run::scene_, Run::space_, Run::run_, Run::files_, Run::resumed_, Run::record, Run::times_;
-
 public:
-  explicit ConsolidationRun(const ColumnRequest &request) : Run(request, {}, settings_of(request.scene.load, true))
+  explicit ConsolidationRun(const ColumnRequest &request) : StaticsRun(request, settings_of(request.scene.load, true))
   {
     if (resumed_)
       immediate_settlement_ = resumed_->number("immediate_settlement");
@@ -54,22 +49,21 @@ public:
 private:
   void start() override
   {
-    this->progress_.say(fmt::format("{} steps from {:.5g} s to {:.5g} s{}", ends_.size(), ends_.front(), ends_.back(),
-                                    resumed_ ? fmt::format(", from {:.5g} s on", run_.time()) : ""));
+    progress_.say(fmt::format("{} steps from {:.5g} s to {:.5g} s{}", ends_.size(), ends_.front(), ends_.back(),
+                              resumed_ ? fmt::format(", from {:.5g} s on", run_.time()) : ""));
     if (!resumed_ && !at_once_) // the step of a load at once has its own row
       record();
   }
 
   void step() override
   {
-    const Stopwatch watch;
     const bool load_comes = at_once_ && run_.n_steps() == 0;
-    if (load_comes)
-      run_.step_undrained();
-    else
-      run_.step(ends_[n_done()] - run_.time());
-    times_.solver += watch.seconds();
-    ++times_.steps;
+    solve([&] {
+      if (load_comes)
+        run_.step_undrained();
+      else
+        run_.step(ends_[n_done()] - run_.time());
+    });
     record();
     if (load_comes)
       immediate_settlement_ = files_.history().state.settlement;
@@ -81,12 +75,13 @@ private:
   double n_total() const override { return static_cast<double>(ends_.size()) + 1; }
   void add_to(ColumnCheckpoint &checkpoint) override
   {
+    StaticsRun::add_to(checkpoint);
     checkpoint.numbers["immediate_settlement"] = immediate_settlement_;
   }
 
   void add_results(ColumnSummary &summary) override
   {
-    summary.final_settlement = final_settlement(this->request_, space_);
+    summary.final_settlement = final_settlement(request_, space_);
     summary.degree =
         (summary.last.settlement - immediate_settlement_) / (summary.final_settlement - immediate_settlement_);
   }
@@ -97,13 +92,5 @@ private:
 };
 } // namespace
 
-template <int dim>
-RunResult run_consolidation(const ColumnRequest &request)
-{
-  return ConsolidationRun<dim>(request).go();
-}
-
-template RunResult run_consolidation<1>(const ColumnRequest &);
-template RunResult run_consolidation<2>(const ColumnRequest &);
-template RunResult run_consolidation<3>(const ColumnRequest &);
+RunResult run_consolidation(const ColumnRequest &request) { return ConsolidationRun(request).go(); }
 } // namespace isostat

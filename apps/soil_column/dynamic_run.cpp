@@ -28,17 +28,12 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
   return settings;
 }
 
-template <int dim>
-class DynamicRun : public ColumnRun<dim, Dynamics>
+class DynamicRun : public ColumnRun<Dynamics>
 {
-  using Run = ColumnRun<dim, Dynamics>;
-  using Run::request_, Run::scene_, Run::space_, Run::soil_, Run::run_, Run::files_, Run::follower_, Run::resumed_,
-      Run::velocities_, Run::instant_, Run::times_;
-
 public:
   DynamicRun(const ColumnRequest &request, const std::array<Motion, 3> &motions)
-      : Run(request, motions, settings_of(request.scene, motions)),
-        motion_(scene_, space_, this->motions_, run_.time_step())
+      : ColumnRun<Dynamics>(request, motions, settings_of(request.scene, motions)),
+        motion_(scene_, space_, motions_, run_.time_step())
   {
     if (resumed_)
       motion_.restore(*resumed_);
@@ -65,18 +60,17 @@ private:
             MPI_Allreduce(MPI_IN_PLACE, &range_[1], 1, MPI_DOUBLE, MPI_MAX, all);
           }
         if (ranks().first())
-          this->progress_.say(fmt::format("{} packings, V_s {:.0f} to {:.0f} m/s", n_packings, range_[0], range_[1]));
+          progress_.say(fmt::format("{} packings, V_s {:.0f} to {:.0f} m/s", n_packings, range_[0], range_[1]));
       }
-    this->progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
-                                    1e3 * run_.stable_step(), last_step_ + 1,
-                                    resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
-    soil_.material->seconds = 0;
+    progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
+                              1e3 * run_.stable_step(), last_step_ + 1,
+                              resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
   }
 
   /// Every n whole steps.
   bool due(const std::optional<double> &interval) const
   {
-    return interval && run_.n_steps() % this->steps_in(*interval) == 0;
+    return interval && run_.n_steps() % steps_in(*interval) == 0;
   }
 
   /// One step, and what is written of the instant it starts from.
@@ -86,20 +80,19 @@ private:
                paraview = due(scene_.output.paraview_interval);
     if (grain_files_)
       look_at_grains(row, profile);
-    const Stopwatch watch;
-    if (row || profile || paraview)
-      observe_step(run_, space_, instant_);
-    else
-      run_.step();
-    times_.solver += watch.seconds();
-    ++times_.steps;
+    solve([&] {
+      if (row || profile || paraview)
+        observe_step(run_, space_, instant_);
+      else
+        run_.step();
+    });
     follower_.follow(run_);
     files_.history().follow(run_);
     motion_.follow(run_);
     if (grain_files_)
       grain_files_->follow(run_.n_steps(), run_.time());
     if (row || profile || paraview || files_.history().has_complete())
-      this->write([&] {
+      write([&] {
         if (row)
           files_.record(instant_);
         if (profile)
@@ -132,6 +125,7 @@ private:
 
   void add_to(ColumnCheckpoint &checkpoint) override
   {
+    ColumnRun<Dynamics>::add_to(checkpoint);
     motion_.save(checkpoint);
     if (!grain_files_)
       return;
@@ -141,34 +135,28 @@ private:
 
   void finish_files() override { motion_.write_spectra(request_.folder / "spectra.csv"); }
 
-  /// Velocities of the soil of grains at its start, the smallest redundancy index, and what the packings took.
+  /// Velocities of the soil of grains at its start, and the smallest redundancy index.
   void add_results(ColumnSummary &summary) override
   {
     summary.time_step = run_.time_step();
     summary.bands = motion_.bands();
     if (!grain_files_)
       return;
-    const RveMaterialCost &cost = soil_.grains->cost();
     const auto n_packings = soil_.grains->owners().size();
     const auto &[redundancy, depth, time, constraints] = grain_files_->minimum();
     summary.grains = {n_packings, range_[0], range_[1], scene_.output.profile_interval.has_value(),
                       redundancy, depth,     time,      constraints,
                       soil_.seeds};
-    times_.packing_trials = static_cast<double>(cost.trials * n_packings);
-    times_.packing_steps = static_cast<double>(cost.steps);
-    times_.in_packings = cost.batch_seconds;
-    times_.all_packings = cost.rve_seconds;
-    times_.waves = cost.wave_seconds;
   }
 
   std::uint64_t last_step() const
   {
     const double n = std::floor(scene_.analysis.duration / run_.time_step() * (1 + 1e-12));
-    if (!(n <= this->most_steps))
-      throw InputError(fmt::format(
-          "analysis.duration = {:g} s: must be at most {:g} s, because the time step is {:g} s "
-          "and more than {:g} of them cannot be counted.",
-          scene_.analysis.duration, this->most_steps * run_.time_step(), run_.time_step(), this->most_steps));
+    if (!(n <= most_steps))
+      throw InputError(
+          fmt::format("analysis.duration = {:g} s: must be at most {:g} s, because the time step is {:g} s and more "
+                      "than {:g} of them cannot be counted.",
+                      scene_.analysis.duration, most_steps * run_.time_step(), run_.time_step(), most_steps));
     return static_cast<std::uint64_t>(n);
   }
 
@@ -179,13 +167,5 @@ private:
 };
 } // namespace
 
-template <int dim>
-RunResult run_dynamic(const ColumnRequest &request)
-{
-  return DynamicRun<dim>(request, column_motions(request.scene)).go();
-}
-
-template RunResult run_dynamic<1>(const ColumnRequest &);
-template RunResult run_dynamic<2>(const ColumnRequest &);
-template RunResult run_dynamic<3>(const ColumnRequest &);
+RunResult run_dynamic(const ColumnRequest &request) { return DynamicRun(request, column_motions(request.scene)).go(); }
 } // namespace isostat

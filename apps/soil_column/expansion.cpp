@@ -6,8 +6,7 @@
 
 namespace isostat
 {
-template <int dim>
-CapExpansions<dim>::CapExpansions(const ColumnScene &scene, const Discretisation<dim> &space)
+CapExpansions::CapExpansions(const ColumnScene &scene, const FiniteElementSpace &space)
 {
   if (scene.water.drainage != Drainage::coupled || scene.mesh.distributed || scene.mesh.sides == Sides::walls)
     return;
@@ -29,8 +28,7 @@ CapExpansions<dim>::CapExpansions(const ColumnScene &scene, const Discretisation
     }
 }
 
-template <int dim>
-std::vector<double> CapExpansions<dim>::follow(const ColumnInstant &instant)
+std::vector<double> CapExpansions::follow(const ColumnInstant &instant)
 {
   std::vector<double> now;
   for (std::size_t k = 0; k < caps_.size(); ++k)
@@ -52,8 +50,7 @@ std::vector<double> CapExpansions<dim>::follow(const ColumnInstant &instant)
   return now;
 }
 
-template <int dim>
-void CapExpansions<dim>::save(ColumnCheckpoint &checkpoint) const
+void CapExpansions::save(ColumnCheckpoint &checkpoint) const
 {
   if (caps_.empty())
     return;
@@ -62,8 +59,7 @@ void CapExpansions<dim>::save(ColumnCheckpoint &checkpoint) const
     values.insert(values.end(), {cap.last, cap.largest, cap.largest_time});
 }
 
-template <int dim>
-void CapExpansions<dim>::restore(const ColumnCheckpoint &checkpoint)
+void CapExpansions::restore(const ColumnCheckpoint &checkpoint)
 {
   if (caps_.empty())
     return;
@@ -75,8 +71,4 @@ void CapExpansions<dim>::restore(const ColumnCheckpoint &checkpoint)
       caps_[k].largest_time = values[3 * k + 2];
     }
 }
-
-template class CapExpansions<1>;
-template class CapExpansions<2>;
-template class CapExpansions<3>;
 } // namespace isostat

@@ -27,11 +27,10 @@ struct CapExpansion
 /// line x = y = 0, of every row of the history. None unless displacement and pore pressure are coupled, and none of a
 /// distributed mesh.
 /// tested: tests/apps/column_water_test.py
-template <int dim>
 class CapExpansions
 {
 public:
-  CapExpansions(const ColumnScene &scene, const Discretisation<dim> &space);
+  CapExpansions(const ColumnScene &scene, const FiniteElementSpace &space);
 
   /// E of each interface, m.
   std::vector<double> follow(const ColumnInstant &instant);

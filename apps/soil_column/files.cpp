@@ -35,9 +35,8 @@ SeriesLayout layout_of(const ColumnLine &line, const std::vector<double> &vertic
 }
 } // namespace
 
-template <int dim>
-ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
-                              const std::array<Motion, 3> &motions, std::size_t stride)
+ColumnFiles::ColumnFiles(fs::path folder, const ColumnScene &scene, const FiniteElementSpace &space,
+                         const std::array<Motion, 3> &motions, std::size_t stride)
     : folder_(std::move(folder)), scene_text_(to_toml(scene)), space_(space),
       paraview_(scene.output.paraview_interval.has_value()), box_(scene.mesh.sides == Sides::walls),
       packings_(scene.has_grains() && scene.analysis.kind == AnalysisKind::dynamic),
@@ -47,8 +46,7 @@ ColumnFiles<dim>::ColumnFiles(fs::path folder, const ColumnScene &scene, const D
     line_ = column_line(space);
 }
 
-template <int dim>
-void ColumnFiles<dim>::open(const std::vector<double> &velocities, const ColumnCheckpoint *resumed)
+void ColumnFiles::open(const std::vector<double> &velocities, const ColumnCheckpoint *resumed)
 {
   recorder_ = std::make_unique<Recorder>(folder_, history_.columns(), counter(resumed, "rows"), scene_text_);
   if (line_)
@@ -65,16 +63,14 @@ void ColumnFiles<dim>::open(const std::vector<double> &velocities, const ColumnC
     }
 }
 
-template <int dim>
-void ColumnFiles<dim>::write_rows(bool at_the_end)
+void ColumnFiles::write_rows(bool at_the_end)
 {
   while (const std::optional<std::vector<double>> row = history_.take(at_the_end))
     if (recorder_)
       recorder_->append(*row);
 }
 
-template <int dim>
-void ColumnFiles<dim>::profile(const ColumnInstant &instant, std::span<const double> redundancy)
+void ColumnFiles::profile(const ColumnInstant &instant, std::span<const double> redundancy)
 {
   if (!profiles_)
     return;
@@ -88,8 +84,7 @@ void ColumnFiles<dim>::profile(const ColumnInstant &instant, std::span<const dou
     maps_->append(instant, redundancy);
 }
 
-template <int dim>
-void ColumnFiles<dim>::paraview(const ColumnInstant &instant)
+void ColumnFiles::paraview(const ColumnInstant &instant)
 {
   if (!pvd_)
     return;
@@ -98,8 +93,7 @@ void ColumnFiles<dim>::paraview(const ColumnInstant &instant)
   pvd_->append(instant.time, name);
 }
 
-template <int dim>
-void ColumnFiles<dim>::flush()
+void ColumnFiles::flush()
 {
   if (recorder_)
     recorder_->flush();
@@ -109,10 +103,8 @@ void ColumnFiles<dim>::flush()
     maps_->flush();
 }
 
-template <int dim>
-void ColumnFiles<dim>::save(ColumnCheckpoint checkpoint, const ColumnPeaks &peaks)
+void ColumnFiles::save(ColumnCheckpoint &checkpoint, const ColumnPeaks &peaks)
 {
-  checkpoint.scene = scene_text_;
   history_.save(checkpoint);
   if (!recorder_)
     return;
@@ -121,11 +113,9 @@ void ColumnFiles<dim>::save(ColumnCheckpoint checkpoint, const ColumnPeaks &peak
   checkpoint.numbers["rows"] = static_cast<double>(recorder_->n_rows());
   checkpoint.numbers["profiles"] = profiles_ ? static_cast<double>(profiles_->n_rows()) : 0;
   checkpoint.numbers["paraview"] = pvd_ ? static_cast<double>(pvd_->n_entries()) : 0;
-  write_column_checkpoint(folder_ / "checkpoint", checkpoint);
 }
 
-template <int dim>
-void ColumnFiles<dim>::finish(const ColumnPeaks &peaks, const std::optional<Spreading> &spreading)
+void ColumnFiles::finish(const ColumnPeaks &peaks, const std::optional<Spreading> &spreading)
 {
   flush();
   if (!profiles_)
@@ -141,8 +131,4 @@ void ColumnFiles<dim>::finish(const ColumnPeaks &peaks, const std::optional<Spre
   profiles_->add("end_gamma_xz", spreading->line_gamma, "-");
   profiles_->add("end_displacement", spreading->line_displacement, "m");
 }
-
-template class ColumnFiles<1>;
-template class ColumnFiles<2>;
-template class ColumnFiles<3>;
 } // namespace isostat

@@ -13,12 +13,11 @@ namespace isostat
 /// What a run of a column leaves in its folder while it continues: history, profiles, files for ParaView, checkpoints.
 /// Never changes the run. Only a rank that calls open() touches the disk.
 /// tested: tests/apps/soil_column_test.py
-template <int dim>
 class ColumnFiles
 {
 public:
   /// Collective. Touches nothing yet.   @param stride  steps between rows of the history
-  ColumnFiles(std::filesystem::path folder, const ColumnScene &scene, const Discretisation<dim> &space,
+  ColumnFiles(std::filesystem::path folder, const ColumnScene &scene, const FiniteElementSpace &space,
               const std::array<Motion, 3> &motions, std::size_t stride);
   /// Starts or cuts the files, on the rank that writes.
   /// @param velocities  V_s at every point at the start of the run, m/s   @param resumed  null: start again
@@ -33,21 +32,21 @@ public:
   void profile(const ColumnInstant &instant, std::span<const double> redundancy = {});
   void paraview(const ColumnInstant &instant);
 
-  /// Brings all files up to date, then writes a checkpoint with what belongs to them and the peaks.
-  void save(ColumnCheckpoint checkpoint, const ColumnPeaks &peaks);
+  /// Brings all files up to date; then the checkpoint gets what belongs to them, and the peaks.
+  void save(ColumnCheckpoint &checkpoint, const ColumnPeaks &peaks);
   void flush();
   /// Adds the largest values to the profiles, and the end state of a slope.   @pre the last call
   void finish(const ColumnPeaks &peaks, const std::optional<Spreading> &spreading);
 
   const ColumnLine *line() const { return line_ ? &*line_ : nullptr; } ///< null: a distributed mesh
-  ColumnHistory<dim> &history() { return history_; }
+  ColumnHistory &history() { return history_; }
 
 private:
   std::filesystem::path folder_;
   std::string scene_text_;
-  const Discretisation<dim> &space_;
+  const FiniteElementSpace &space_;
   bool paraview_, box_, packings_, moves_; ///< whether there is one, are any that profiles show; it has velocities
-  ColumnHistory<dim> history_;
+  ColumnHistory history_;
   std::optional<ColumnLine> line_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<SeriesFile> profiles_;

@@ -2,6 +2,7 @@
 #include "apps/soil_column/history.hpp"
 
 #include "apps/deposit/soil_material.hpp"
+#include "apps/soil_column/peaks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,14 +15,7 @@ namespace
 {
 constexpr std::size_t input_at = 2, base_at = 5, surface_at = 8, displacement_at = 14, settlement_at = 17;
 
-double reduced(double x, MPI_Op operation, MPI_Comm communicator)
-{
-  MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, operation, communicator);
-  return x;
-}
-
-template <int dim>
-std::array<long, 3> node_at(const Discretisation<dim> &space, const Place &place)
+std::array<long, 3> node_at(const FiniteElementSpace &space, const Place &place)
 {
   return {space.find_dof(place, 0), space.find_dof(place, 1), space.find_dof(place, 2)};
 }
@@ -34,13 +28,14 @@ void append(const std::vector<double> &values, const std::array<long, 3> &node, 
 }
 } // namespace
 
-template <int dim>
-ColumnHistory<dim>::ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space,
-                                  const std::array<Motion, 3> &motions, std::size_t stride)
-    : space_(space), motions_(motions), rigid_(!scene.base.compliant()), area_(std::pow(scene.mesh.width, dim - 1)),
+ColumnHistory::ColumnHistory(const ColumnScene &scene, const FiniteElementSpace &space,
+                             const std::array<Motion, 3> &motions, std::size_t stride)
+    : space_(space), motions_(motions), rigid_(!scene.base.compliant()),
       base_(node_at(space, {space.mesh().line[0], space.mesh().line[1], 0})),
       surface_(node_at(space, space.mesh().on_line(0))), expansions_(scene, space), filter_(9, stride)
 {
+  for (unsigned axis = 1; axis < space.dimension; ++axis)
+    area_ *= scene.mesh.width;
   for (double depth : scene.output.depths)
     points_.push_back(point_at_depth(space, depth));
   for (const Stress &stress : in_situ_stress(scene, space))
@@ -50,8 +45,7 @@ ColumnHistory<dim>::ColumnHistory(const ColumnScene &scene, const Discretisation
     }
 }
 
-template <int dim>
-std::vector<RecordColumn> ColumnHistory<dim>::columns() const
+std::vector<RecordColumn> ColumnHistory::columns() const
 {
   std::vector<RecordColumn> columns = {{"step", "-"}, {"time", "s"}};
   for (const auto &[what, unit] :
@@ -78,8 +72,7 @@ std::vector<RecordColumn> ColumnHistory<dim>::columns() const
   return columns;
 }
 
-template <int dim>
-typename ColumnHistory<dim>::Extremes ColumnHistory<dim>::extremes(const ColumnInstant &instant) const
+ColumnHistory::Extremes ColumnHistory::extremes(const ColumnInstant &instant) const
 {
   double ru = -std::numeric_limits<double>::infinity(), depth = 0, ratio = std::numeric_limits<double>::infinity();
   for (std::size_t q = 0; q < vertical_stress_.size(); ++q)
@@ -91,16 +84,15 @@ typename ColumnHistory<dim>::Extremes ColumnHistory<dim>::extremes(const ColumnI
           depth = space_.mesh().depth(space_.position[q]);
         }
     }
-  if (!space_.shared_out())
-    return {ru, depth, ratio};
-  const MPI_Comm all = space_.communicator();
-  const double maximum = reduced(ru, MPI_MAX, all);
-  return {maximum, reduced(ru == maximum ? depth : std::numeric_limits<double>::max(), MPI_MIN, all),
-          reduced(ratio, MPI_MIN, all)};
+  if (space_.shared_out())
+    {
+      take_max(ru, {&depth}, space_.communicator());
+      MPI_Allreduce(MPI_IN_PLACE, &ratio, 1, MPI_DOUBLE, MPI_MIN, space_.communicator());
+    }
+  return {ru, depth, ratio};
 }
 
-template <int dim>
-void ColumnHistory<dim>::append_points(const ColumnInstant &instant, std::vector<double> &row) const
+void ColumnHistory::append_points(const ColumnInstant &instant, std::vector<double> &row) const
 {
   for (const PointAtDepth &at : points_)
     {
@@ -111,8 +103,7 @@ void ColumnHistory<dim>::append_points(const ColumnInstant &instant, std::vector
     }
 }
 
-template <int dim>
-std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
+std::vector<double> ColumnHistory::row(const ColumnInstant &instant)
 {
   std::vector<double> row = {0, 0, 0, 0, 0};
   append(instant.acceleration, base_, row);
@@ -154,8 +145,7 @@ std::vector<double> ColumnHistory<dim>::row(const ColumnInstant &instant)
   return row;
 }
 
-template <int dim>
-void ColumnHistory<dim>::follow(const Dynamics &run)
+void ColumnHistory::follow(const Dynamics &run)
 {
   if (!filter_.filters())
     return;
@@ -178,8 +168,7 @@ void ColumnHistory<dim>::follow(const Dynamics &run)
   filter_.follow(sample);
 }
 
-template <int dim>
-std::optional<std::vector<double>> ColumnHistory<dim>::take(bool at_the_end)
+std::optional<std::vector<double>> ColumnHistory::take(bool at_the_end)
 {
   if (waiting_.empty() || !(at_the_end || is_complete(waiting_.front())))
     return {};
@@ -191,8 +180,7 @@ std::optional<std::vector<double>> ColumnHistory<dim>::take(bool at_the_end)
   return row;
 }
 
-template <int dim>
-void ColumnHistory<dim>::save(ColumnCheckpoint &checkpoint) const
+void ColumnHistory::save(ColumnCheckpoint &checkpoint) const
 {
   checkpoint.put(state);
   expansions_.save(checkpoint);
@@ -203,8 +191,7 @@ void ColumnHistory<dim>::save(ColumnCheckpoint &checkpoint) const
     rows.insert(rows.end(), row.begin(), row.end());
 }
 
-template <int dim>
-void ColumnHistory<dim>::restore(const ColumnCheckpoint &checkpoint)
+void ColumnHistory::restore(const ColumnCheckpoint &checkpoint)
 {
   checkpoint.get(state);
   expansions_.restore(checkpoint);
@@ -215,8 +202,4 @@ void ColumnHistory<dim>::restore(const ColumnCheckpoint &checkpoint)
     waiting_.emplace_back(rows.begin() + static_cast<std::ptrdiff_t>(k),
                           rows.begin() + static_cast<std::ptrdiff_t>(k + n));
 }
-
-template class ColumnHistory<1>;
-template class ColumnHistory<2>;
-template class ColumnHistory<3>;
 } // namespace isostat

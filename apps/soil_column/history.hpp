@@ -33,12 +33,11 @@ struct ColumnState
 /// absolute, and filtered of what rows so far apart cannot show (DecimationFilter): such a row is complete only six
 /// rows later. Velocities and displacements count from a rigid base and are absolute above a compliant one.
 /// tested: tests/apps/soil_column_test.py
-template <int dim>
 class ColumnHistory
 {
 public:
   /// Collective.   @param stride  steps between rows; 1: nothing is filtered
-  ColumnHistory(const ColumnScene &scene, const Discretisation<dim> &space, const std::array<Motion, 3> &motions,
+  ColumnHistory(const ColumnScene &scene, const FiniteElementSpace &space, const std::array<Motion, 3> &motions,
                 std::size_t stride);
 
   std::vector<RecordColumn> columns() const;
@@ -73,14 +72,14 @@ private:
   Extremes extremes(const ColumnInstant &instant) const;
   void append_points(const ColumnInstant &instant, std::vector<double> &row) const;
 
-  const Discretisation<dim> &space_;
+  const FiniteElementSpace &space_;
   const std::array<Motion, 3> &motions_;
   bool rigid_;
-  double area_; ///< of the mesh in plan, m2
+  double area_ = 1; ///< of the mesh in plan, m2
   Trio base_, surface_;
   std::vector<PointAtDepth> points_;
   std::vector<double> vertical_stress_, mean_stress_;
-  CapExpansions<dim> expansions_;
+  CapExpansions expansions_;
   DecimationFilter filter_; ///< of input, base and surface
   std::deque<std::vector<double>> waiting_;
 };

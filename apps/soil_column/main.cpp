@@ -11,11 +11,15 @@
 //   soil_column apps/scenes/column/uniform_layer.toml
 //   soil_column apps/scenes/column/recorded_motion.toml --set motion.0.amplitude="0.2 g" --output results/strong
 //   mpirun -n 2 soil_column SCENE --resume
+//   soil_column apps/scenes/biaxial/iwan.toml                                    a block in plane strain is compressed
 //   isostat ensemble apps/scenes/column/quick_ensemble.toml -n 8 -j 2            as often with other packings: bands
-#include "apps/common/summary.hpp"
 #include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "apps/soil_column/run.hpp"
+#include "base/error.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace
 {
@@ -29,25 +33,33 @@ std::string validated(const std::string &file, const std::vector<std::string> &o
   return to_toml(scene);
 }
 
+/// @throws RunFailure  it has ended before its time
+void tell_of_finished(const std::filesystem::path &folder, const char *figures_of, bool figures)
+{
+  if (const Json summary = read_json(folder / "summary.json"); !summary.value("complete", true))
+    throw RunFailure(fmt::format("{}: this run has failed, and would fail again: {}", folder.string(),
+                                 summary.at("failure").get<std::string>()));
+  if (ranks().first())
+    tell_finished(folder, figures_of, figures);
+}
+
 void run_scene(const SceneOptions &options)
 {
   const ColumnRequest request(read_column_scene(options.scene, options.set), options);
+  const char *figures_of = request.scene.analysis.kind == AnalysisKind::biaxial ? "biaxial" : "soil_column";
   if (has_finished(request.folder, request.use, to_toml(request.scene)))
-    {
-      if (ranks().first())
-        tell_finished(request.folder, "soil_column", !options.no_figures);
-      return;
-    }
+    return tell_of_finished(request.folder, figures_of, !options.no_figures);
   const RunResult result = run_column(request);
   if (ranks().first())
-    leave_summary(request.folder, report_of(result.summary, request.scene).text(), to_text(result.times), "soil_column",
-                  !options.no_figures);
+    leave_summary(request.folder, result.summary.text(), to_text(result.times), figures_of, !options.no_figures);
+  if (!result.failure.empty())
+    throw RunFailure(result.failure);
 }
 
 constexpr SceneProgram soil_column{
     .name = "soil_column",
     .description = "A column of saturated soil in layers, or a box of it: shaken, loaded, consolidating, or with a "
-                   "plate that moves into it",
+                   "plate that moves into it; a biaxial block",
     .first_scene = "apps/scenes/column/uniform_layer.toml",
     .scene_text = "scene file (TOML); see docs/column_scene_reference.md",
     .set_example = "analysis.safety=0.5",

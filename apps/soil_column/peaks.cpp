@@ -32,26 +32,17 @@ void take_max(double &value, std::initializer_list<double *> with, MPI_Comm comm
 void ColumnPeaks::save(ColumnCheckpoint &checkpoint) const
 {
   checkpoint.put(*this);
-  checkpoint.vectors["peak_gamma"] = line_gamma;
-  checkpoint.vectors["peak_line_ru"] = line_ru;
-  checkpoint.vectors["peak_acceleration"] = line_acceleration;
-  checkpoint.vectors["peak_velocity"] = line_velocity;
-  checkpoint.vectors["peak_displacement"] = line_displacement;
+  for_each_line(*this, [&](const char *name, const auto &values) { checkpoint.vectors[name] = values; });
 }
 
 void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
 {
   checkpoint.get(*this);
-  line_gamma = checkpoint.vector("peak_gamma", line_gamma.size());
-  line_ru = checkpoint.vector("peak_line_ru", line_ru.size());
-  line_acceleration = checkpoint.vector("peak_acceleration", line_acceleration.size());
-  line_velocity = checkpoint.vector("peak_velocity", line_velocity.size());
-  line_displacement = checkpoint.vector("peak_displacement", line_displacement.size());
+  for_each_line(*this, [&](const char *name, auto &values) { values = checkpoint.vector(name, values.size()); });
 }
 
-template <int dim>
-PeakFollower<dim>::PeakFollower(const Discretisation<dim> &space, const ColumnLine *line,
-                                const std::vector<double> &vertical_stress)
+PeakFollower::PeakFollower(const FiniteElementSpace &space, const ColumnLine *line,
+                           const std::vector<double> &vertical_stress)
     : space_(space), line_(line), vertical_stress_(vertical_stress)
 {
   for (unsigned c = 0; c < 2; ++c)
@@ -65,8 +56,7 @@ PeakFollower<dim>::PeakFollower(const Discretisation<dim> &space, const ColumnLi
     }
 }
 
-template <int dim>
-void PeakFollower<dim>::follow(const Vector &displacement, const std::vector<double> &pressure, double time)
+void PeakFollower::follow(const Vector &displacement, const std::vector<double> &pressure, double time)
 {
   gradients_of(space_, displacement, gradients_);
   const auto depth = [&](std::size_t q) { return space_.mesh().depth(space_.position[q]); };
@@ -93,8 +83,7 @@ void PeakFollower<dim>::follow(const Vector &displacement, const std::vector<dou
       }
 }
 
-template <int dim>
-void PeakFollower<dim>::follow(const Dynamics &run)
+void PeakFollower::follow(const Dynamics &run)
 {
   const bool coupled = run.settings().drainage == Drainage::coupled;
   const double now = run.time() - run.time_step(); // what accelerations are of
@@ -113,15 +102,13 @@ void PeakFollower<dim>::follow(const Dynamics &run)
   follow_nodes(run.displacement(), 0, 0, peaks.line_displacement);
 }
 
-template <int dim>
-void PeakFollower<dim>::follow_nodes(const Vector &values, double x, double y, std::vector<double> &largest) const
+void PeakFollower::follow_nodes(const Vector &values, double x, double y, std::vector<double> &largest) const
 {
   for (std::size_t k = 0; k < line_->nodes.size(); ++k)
     largest[k] = std::max(largest[k], horizontal(values, line_->nodes[k], line_->nodes[k] + 1, x, y));
 }
 
-template <int dim>
-void PeakFollower<dim>::gather()
+void PeakFollower::gather()
 {
   if (!space_.shared_out())
     return;
@@ -130,8 +117,4 @@ void PeakFollower<dim>::gather()
   take_max(peaks.gamma, {&peaks.gamma_depth}, all);
   take_max(peaks.ru, {&peaks.ru_depth, &peaks.ru_time}, all);
 }
-
-template class PeakFollower<1>;
-template class PeakFollower<2>;
-template class PeakFollower<3>;
 } // namespace isostat

@@ -26,17 +26,23 @@ struct ColumnPeaks
     visit("peak_gamma", p.gamma), visit("peak_gamma_depth", p.gamma_depth);
     visit("peak_ru", p.ru), visit("peak_ru_depth", p.ru_depth), visit("peak_ru_time", p.ru_time);
   }
+  template <class Peaks, class Visit>
+  static void for_each_line(Peaks &p, const Visit &visit)
+  {
+    visit("peak_gamma", p.line_gamma), visit("peak_line_ru", p.line_ru);
+    visit("peak_acceleration", p.line_acceleration), visit("peak_velocity", p.line_velocity);
+    visit("peak_displacement", p.line_displacement);
+  }
   void save(ColumnCheckpoint &checkpoint) const;
   void restore(const ColumnCheckpoint &checkpoint);
 };
 
 /// Follows them.
-template <int dim>
 class PeakFollower
 {
 public:
   /// @param line  null: the mesh is shared out   @param vertical_stress  sigma'_v0 of every point, Pa
-  PeakFollower(const Discretisation<dim> &space, const ColumnLine *line, const std::vector<double> &vertical_stress);
+  PeakFollower(const FiniteElementSpace &space, const ColumnLine *line, const std::vector<double> &vertical_stress);
   /// After each step.
   void follow(const Dynamics &run);
   /// Strain and r_u of any solution.
@@ -50,7 +56,7 @@ private:
   /// Of `values`, with x and y added to those of the unknowns, at the nodes of the line.
   void follow_nodes(const Vector &values, double x, double y, std::vector<double> &largest) const;
 
-  const Discretisation<dim> &space_;
+  const FiniteElementSpace &space_;
   const ColumnLine *line_;
   const std::vector<double> &vertical_stress_;
   std::array<long, 2> surface_;

@@ -19,10 +19,11 @@ void PlateResult::follow(double displacement, double force, double step_residual
   residual = std::max(residual, step_residual);
 }
 
-void add_plate(const PlateResult &p, const Plate &plate, Summary &summary)
+void add_plate(const PlateResult &p, const ColumnScene &scene, Summary &summary)
 {
+  const Plate &plate = scene.plate;
   summary.row("plate", "{:.4g} m long, {}, moved {:+.4g} m in {} steps", Value{"plate.length", p.length},
-              plate.rough ? "rough" : "smooth", plate.displacement, plate.steps);
+              plate.rough ? "rough" : "smooth", plate.displacement, scene.load_steps.number);
   summary.row("force against it",
               "{:.4g} kN/m in situ, largest {:.4g} kN/m at {:+.4g} m, smallest {:.4g} kN/m at {:+.4g} m, "
               "{:.4g} kN/m at the end",

@@ -28,7 +28,7 @@ struct PlateResult
   }
 };
 
-void add_plate(const PlateResult &result, const Plate &plate, Summary &summary);
+void add_plate(const PlateResult &result, const ColumnScene &scene, Summary &summary);
 
 /// Weight of a box of soil that is as high everywhere as where it is highest, N/m.
 double largest_weight(const ColumnScene &scene);

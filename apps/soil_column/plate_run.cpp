@@ -13,7 +13,7 @@ StaticsSettings settings_of(const ColumnScene &scene)
   const double way = plate.inwards() * plate.displacement;
   StaticsSettings settings;
   settings.displacements = {{{patch_face(0), plate.axis()}, [way](double t, const Place &) { return way * t; }}};
-  settings.newton = plate.newton;
+  settings.newton = scene.load_steps.newton;
   settings.min_force = 1e-3 * largest_weight(scene); // before the plate has a force of its own
   return settings;
 }
@@ -23,12 +23,11 @@ const std::vector<RecordColumn> columns = {
     {"pressure", "Pa"}, {"iterations"},        {"trials"},       {"substeps"},
     {"rejected"},       {"residual"}};
 
-class PlateRun : public StaticsRun<2>
+class PlateRun : public StaticsRun
 {
 public:
   explicit PlateRun(const ColumnRequest &request)
-      : StaticsRun<2>(request, std::array<Motion, 3>{}, settings_of(request.scene)),
-        forces_(scene_, space_, run_.stresses())
+      : StaticsRun(request, settings_of(request.scene)), forces_(scene_, space_, run_.stresses())
   {
     if (!resumed_)
       return;
@@ -40,32 +39,36 @@ public:
 private:
   void start() override
   {
-    progress_.say(fmt::format("{} points, {} steps{}", space_.n_points(), scene_.plate.steps,
+    progress_.say(fmt::format("{} points, {} steps{}", space_.n_points(), scene_.load_steps.number,
                               resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
-    on_first_rank([&] {
-      rows_ = std::make_unique<Recorder>(request_.folder / "plate", columns,
-                                         static_cast<std::size_t>(resumed_ ? run_.n_steps() + 1 : 0));
-    });
     if (!resumed_)
       record_plate();
   }
 
+  void open_files() override
+  {
+    StaticsRun::open_files();
+    rows_ = std::make_unique<Recorder>(request_.folder / "plate", columns,
+                                       static_cast<std::size_t>(resumed_ ? run_.n_steps() + 1 : 0));
+  }
+  void flush_files() override
+  {
+    StaticsRun::flush_files();
+    if (rows_)
+      rows_->flush();
+  }
+
   void step() override
   {
-    const Stopwatch watch;
     try
       {
-        run_.step((static_cast<double>(run_.n_steps()) + 1) / scene_.plate.steps - run_.time());
+        solve([&] { run_.step((static_cast<double>(run_.n_steps()) + 1) / scene_.load_steps.number - run_.time()); });
       }
     catch (const RunFailure &failure)
       {
-        if (rows_)
-          rows_->flush();
         throw RunFailure(fmt::format("{}\n  the plate met at most {:.6g} kN/m, at {:+.4g} m, and {:.6g} kN/m last",
                                      failure.what(), result_.largest / 1e3, result_.largest_at, result_.last / 1e3));
       }
-    times_.solver += watch.seconds();
-    ++times_.steps;
     record_plate();
   }
 
@@ -83,7 +86,7 @@ private:
     progress_.say(
         fmt::format("step {:>4} of {}  displacement {:+.5g} m  force {:.5g} kN/m  pressure {:.5g} kPa  {} trials, "
                     "{} sub-steps, residual {:.1e}",
-                    run_.n_steps(), scene_.plate.steps, moved, force / 1e3, pressure / 1e3, effort.trials,
+                    run_.n_steps(), scene_.load_steps.number, moved, force / 1e3, pressure / 1e3, effort.trials,
                     effort.substeps, run_.residual()));
   }
 
@@ -92,10 +95,11 @@ private:
     return fmt::format("displacement {:+.4g} m  force {:.4g} kN/m", run_.time() * scene_.plate.displacement,
                        result_.last / 1e3);
   }
-  bool is_done() const override { return run_.n_steps() >= scene_.plate.steps; }
-  double n_total() const override { return scene_.plate.steps; }
+  bool is_done() const override { return run_.n_steps() >= scene_.load_steps.number; }
+  double n_total() const override { return scene_.load_steps.number; }
   void add_to(ColumnCheckpoint &checkpoint) override
   {
+    StaticsRun::add_to(checkpoint);
     if (rows_)
       rows_->flush();
     checkpoint.put(result_);

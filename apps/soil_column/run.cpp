@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/run.hpp"
 
-#include "apps/common/summary.hpp"
 #include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "base/error.hpp"
@@ -13,12 +12,8 @@ namespace isostat
 {
 namespace
 {
-template <int dim>
-RunResult run_kind(const ColumnRequest &request)
-{
-  return request.scene.analysis.kind == AnalysisKind::dynamic ? run_dynamic<dim>(request)
-                                                              : run_consolidation<dim>(request);
-}
+/// Of each AnalysisKind.
+constexpr RunResult (*runs[])(const ColumnRequest &) = {run_dynamic, run_consolidation, run_plate, run_biaxial};
 
 /// A rank without cells is more than p4est and MUMPS take.
 void check_ranks(const ColumnScene &scene)
@@ -35,21 +30,40 @@ void check_ranks(const ColumnScene &scene)
                     cells, ranks().size, cells));
 }
 
-RunResult run_dimension(const ColumnRequest &request)
+/// Where the time of a column of grains went; the rest of the material's time is waiting for other ranks.
+std::string packings_text(const RunTimes &t)
 {
-  if (request.scene.analysis.kind == AnalysisKind::plate)
-    return run_plate(request);
-  switch (request.scene.mesh.dimension)
-    {
-    case 1:
-      return run_kind<1>(request);
-    case 2:
-      return run_kind<2>(request);
-    default:
-      return run_kind<3>(request);
-    }
+  return fmt::format(
+      "  packings                 {:.0f} calls, {:.1f} time steps each; {:.1f} s, on all cores together {:.1f} s\n"
+      "  outside of packings      {:.2f} % of the wall time; wave velocities {:.1f} s\n",
+      t.packing_trials, t.packing_steps / t.packing_trials, t.in_packings, t.all_packings,
+      100 * (1 - t.in_packings / t.wall), t.waves);
+}
+
+/// For times.json, which benchmarks read: times in s.
+Json to_json(const RunTimes &t)
+{
+  return {{"wall", t.wall},
+          {"steps", std::llround(t.steps)},
+          {"solver", t.solver},
+          {"material", t.material},
+          {"packing_calls", std::llround(t.packing_trials)},
+          {"packing_steps", std::llround(t.packing_steps)},
+          {"packings", t.in_packings},
+          {"all_packings", t.all_packings},
+          {"wave_velocities", t.waves}};
 }
 } // namespace
+
+std::string to_text(const RunTimes &t)
+{
+  const double n = std::max(t.steps, 1.0);
+  return (t.packing_trials > 0 ? packings_text(t) : "") +
+         fmt::format(
+             "  time per step            {:.1f} us elements, {:.1f} us material\n  wall time                {:.2f} "
+             "s, {:.0f} steps\n",
+             1e6 * t.solver / n, 1e6 * t.material / n, t.wall, t.steps);
+}
 
 RunResult run_column(const ColumnRequest &request)
 {
@@ -58,11 +72,11 @@ RunResult run_column(const ColumnRequest &request)
     check_result_folder(request.folder, request.use);
     check_libraries(request.scene);
   });
-  RunResult result = run_dimension(request);
+  RunResult result = runs[static_cast<int>(request.scene.analysis.kind)](request);
   if (ranks().first())
     {
       write_json(request.folder / "times.json", to_json(result.times));
-      write_json(request.folder / "summary.json", report_of(result.summary, request.scene).json());
+      write_json(request.folder / "summary.json", result.summary.json());
     }
   return result;
 }

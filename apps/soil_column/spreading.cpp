@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/spreading.hpp"
 
+#include "apps/soil_column/peaks.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -18,43 +20,18 @@ double downslope_at(const FiniteElementSpace &space, const Vector &displacement,
   return u;
 }
 
-/// gamma_xz at all points of this rank.
-std::vector<double> shear_strains(const FiniteElementSpace &space, const Vector &displacement)
-{
-  Vector whole = displacement;
-  whole.update_ghost_values();
-  std::vector<Gradient> gradients(space.n_points());
-  space.gradients(whole, gradients);
-  std::vector<double> strains;
-  for (const Gradient &h : gradients)
-    strains.push_back(h[2] + h[6]);
-  return strains;
-}
-
 /// The strain that is largest by size and its depth, the shallowest if there are several, over all ranks.
 void find_largest(const FiniteElementSpace &space, const std::vector<double> &strains, Spreading &found)
 {
   const double height = space.mesh().soil.height();
-  double largest[3] = {0, height, 0}; // size, depth, with its sign
-  for (std::size_t q = 0; q < strains.size(); ++q)
-    if (const double size = std::abs(strains[q]), depth = height - space.position[q][2];
-        size > largest[0] || (size == largest[0] && depth < largest[1]))
-      std::tie(largest[0], largest[1], largest[2]) = std::tuple(size, depth, strains[q]);
-  int n = 1;
-  if (space.shared_out())
-    MPI_Comm_size(space.communicator(), &n);
-  std::vector<double> all(3 * static_cast<std::size_t>(n));
-  if (space.shared_out())
-    MPI_Allgather(largest, 3, MPI_DOUBLE, all.data(), 3, MPI_DOUBLE, space.communicator());
-  else
-    std::copy(std::begin(largest), std::end(largest), all.begin());
+  double size = 0;
   found.gamma_depth = height;
-  for (std::size_t k = 0; k < all.size(); k += 3)
-    if (all[k] > std::abs(found.gamma) || (all[k] == std::abs(found.gamma) && all[k + 1] < found.gamma_depth))
-      {
-        found.gamma = all[k + 2];
-        found.gamma_depth = all[k + 1];
-      }
+  for (std::size_t q = 0; q < strains.size(); ++q)
+    if (const double here = std::abs(strains[q]), depth = height - space.position[q][2];
+        here > size || (here == size && depth < found.gamma_depth))
+      std::tie(size, found.gamma_depth, found.gamma) = std::tuple(here, depth, strains[q]);
+  if (space.shared_out())
+    take_max(size, {&found.gamma_depth, &found.gamma}, space.communicator());
 }
 } // namespace
 
@@ -66,7 +43,11 @@ Spreading spreading(const ColumnScene &scene, const FiniteElementSpace &space, c
   const SoilProfile &soil = space.mesh().soil;
   const double of_base = downslope_at(space, displacement, 0);
   found.displacement = downslope_at(space, displacement, soil.height()) - of_base;
-  const std::vector<double> strains = shear_strains(space, displacement);
+  std::vector<Gradient> gradients;
+  gradients_of(space, displacement, gradients);
+  std::vector<double> strains; // gamma_xz
+  for (const Gradient &h : gradients)
+    strains.push_back(h[2] + h[6]);
   find_largest(space, strains, found);
   if (!line)
     return found;

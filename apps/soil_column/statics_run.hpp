@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/soil_column/column_run.hpp"
-#include "fem/solve/statics.hpp"
 
 namespace isostat
 {
 /// A run whose steps are equilibria, each of which is recorded.
-template <int dim>
-class StaticsRun : public ColumnRun<dim, Statics>
+class StaticsRun : public ColumnRun<Statics>
 {
-  using Run = ColumnRun<dim, Statics>;
-
 public:
-  using Run::Run;
+  StaticsRun(const ColumnRequest &request, const StaticsSettings &settings)
+      : ColumnRun<Statics>(request, {}, interruptible(settings))
+  {}
 
 protected:
-  using Run::space_, Run::run_, Run::files_, Run::follower_, Run::instant_;
-
   /// A row, a profile and a ParaView file of every step.
   void record()
   {
@@ -30,15 +26,12 @@ protected:
     instant_.stresses.assign(run_.stresses().begin(), run_.stresses().end());
     instant_.pressure = run_.point_pressure();
     follower_.follow(u, instant_.pressure, run_.time());
-    this->write([&] {
+    write([&] {
       files_.record(instant_);
       files_.write_rows();
       files_.profile(instant_);
       files_.paraview(instant_);
     });
   }
-
-  std::string place_of(std::uint64_t) const override { return {}; }
-  bool has_long_steps() const override { return true; }
 };
 } // namespace isostat

@@ -169,7 +169,7 @@ void add_end(const ColumnSummary &s, const ColumnScene &scene, Summary &summary)
   if (shaken(scene))
     return summary.row("energy residual", "{}", text);
   if (s.plate)
-    return add_plate(*s.plate, scene.plate, summary);
+    return add_plate(*s.plate, scene, summary);
   summary.row("final settlement", "{:.4f} mm, drained", Value{"final_settlement", s.final_settlement, mm});
   const std::string degree = summary.text("{:.4f}", Value{"degree_of_consolidation", s.degree});
   if (std::isfinite(s.degree))
@@ -215,41 +215,5 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
     summary.row("", "warning: {}", warning);
   add_end(s, scene, summary);
   return summary;
-}
-
-namespace
-{
-/// Where the time of a column of grains went; the rest of the material's time is waiting for other ranks.
-std::string packings_text(const RunTimes &t)
-{
-  return fmt::format(
-      "  packings                 {:.0f} calls, {:.1f} time steps each; {:.1f} s, on all cores together {:.1f} s\n"
-      "  outside of packings      {:.2f} % of the wall time; wave velocities {:.1f} s\n",
-      t.packing_trials, t.packing_steps / t.packing_trials, t.in_packings, t.all_packings,
-      100 * (1 - t.in_packings / t.wall), t.waves);
-}
-} // namespace
-
-std::string to_text(const RunTimes &t)
-{
-  const double n = std::max(t.steps, 1.0);
-  return (t.packing_trials > 0 ? packings_text(t) : "") +
-         fmt::format(
-             "  time per step            {:.1f} us elements, {:.1f} us material\n  wall time                {:.2f} "
-             "s, {:.0f} steps\n",
-             1e6 * t.solver / n, 1e6 * t.material / n, t.wall, t.steps);
-}
-
-Json to_json(const RunTimes &t)
-{
-  return {{"wall", t.wall},
-          {"steps", std::llround(t.steps)},
-          {"solver", t.solver},
-          {"material", t.material},
-          {"packing_calls", std::llround(t.packing_trials)},
-          {"packing_steps", std::llround(t.packing_steps)},
-          {"packings", t.in_packings},
-          {"all_packings", t.all_packings},
-          {"wave_velocities", t.waves}};
 }
 } // namespace isostat

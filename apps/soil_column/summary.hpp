@@ -6,7 +6,6 @@
 #include "apps/soil_column/plate_forces.hpp"
 #include "apps/soil_column/spreading.hpp"
 #include "apps/soil_column/surface_motion.hpp"
-#include "base/files/json.hpp"
 
 #include <optional>
 
@@ -25,7 +24,7 @@ struct GrainsSummary
   std::vector<std::vector<std::size_t>> seeds = {}; ///< SoilMaterial::seeds
 };
 
-/// What is reported of a finished run. Nothing in it depends on the machine: see RunTimes for that.
+/// What is reported of a finished run. Nothing in it depends on the machine: see RunTimes (run.hpp) for that.
 struct ColumnSummary
 {
   std::size_t cells = 0, points = 0; ///< of the whole mesh
@@ -44,19 +43,5 @@ struct ColumnSummary
   std::optional<PlateResult> plate;    ///< likewise, if a plate moves
 };
 
-/// What the run took on this machine.
-struct RunTimes
-{
-  double wall = 0, solver = 0, material = 0; ///< s: from start to end, in steps without the material, in the material
-  double steps = 0;                          ///< that were made, after a resume fewer than the run has
-  double packing_trials = 0, packing_steps = 0; ///< calls of packings, their own time steps
-  double in_packings = 0, all_packings = 0;     ///< s: wall clock in packings, on all cores together
-  double waves = 0;                             ///< s: for their wave velocities
-};
-
 Summary report_of(const ColumnSummary &summary, const ColumnScene &scene);
-/// For the terminal.
-std::string to_text(const RunTimes &times);
-/// For times.json, which benchmarks read: times in s.
-Json to_json(const RunTimes &times);
 } // namespace isostat

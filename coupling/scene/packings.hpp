@@ -19,7 +19,7 @@ SceneFragment<SpecimenRequest> lot_keys();
 
 /// What the table of keys cannot say: soil of grains needs a library.
 /// @param section  where they are, "grains"   @throws InputError  no library, a floor above the ceiling
-/// tested: tests/apps/deposit/scene_error_test.cpp, tests/apps/biaxial_test.py
+/// tested: tests/apps/deposit/scene_error_test.cpp, tests/apps/grain_column_test.py
 void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings);
 /// @param section  of the request, "layer.0"   @param per_point  packings of a point, by the key `realisations`
 /// @throws InputError  fewer mixed seeds than a point has packings, a draw number without any

@@ -180,31 +180,17 @@ constexpr const char *defaults_head =
 constexpr const char *manual_head =
 R"(# Scene reference
 
-A scene is one TOML file that describes a run. This page is generated from the table "
- "in
+A scene is one TOML file that describes a run. This page is generated from the table in
 `dem/scene/schema.cpp` (`scene_manual()`); a test compares them. Ready scenes are in `apps/scenes`.
 
-- "
- "Quantities are text with a unit: `"10 mm"`, `"200 kPa"`, `"18 deg"`, `"0.5 1/s"`, `"2650 kg/m3"`, `"50 ns"`.
+- Quantities are text with a unit: `"10 mm"`, `"200 kPa"`, `"18 deg"`, `"0.5 1/s"`, `"2650 kg/m3"`, `"50 ns"`.
   A bare number, or the unit of something else, is an error. What has no dimension is a plain number.
 - Friction is an angle in files (`deg`, `rad`, or its tangent as `"0.325 tan"`) and a coefficient tan(phi) inside.
-- "
-                                                                            "Numbers other than 0 are between 1e-30 "
-                                                                            "and 1e30 in size, in SI units.
-- An "
-                                                                            "unknown key is an error, and so is a "
-                                                                            "repeated key. Stresses are effective; "
-                                                                            "compression is positive.
-- A key "
-                                                                            "written `rolling.limit` is `limit` in "
-                                                                            "the table `rolling`: `rolling = { limit "
-                                                                            "= 0.5 }`, or `rolling.limit = 0.5`.
-- "
-                                                                            "`--set key=value` on the command line "
-                                                                            "overrides the file: `--set "
-                                                                            "motion.damping=0.3`,
-  `--set "
-                                                                            "specimen.pressure="200 kPa"`, `--set stage.0.strain=0.02`. Of keys that exclude each other, the one set this
+- Numbers other than 0 are between 1e-30 and 1e30 in size, in SI units.
+- An unknown key is an error, and so is a repeated key. Stresses are effective; compression is positive.
+- A key written `rolling.limit` is `limit` in the table `rolling`: `rolling = { limit = 0.5 }`, or `rolling.limit = 0.5`.
+- `--set key=value` on the command line overrides the file: `--set motion.damping=0.3`,
+  `--set specimen.pressure="200 kPa"`, `--set stage.0.strain=0.02`. Of keys that exclude each other, the one set this
   way replaces the one in the file.
 
 )";

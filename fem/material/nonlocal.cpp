@@ -59,8 +59,13 @@ void Nonlocal::find_moduli()
 
 void Nonlocal::set_initial_stress(std::span<const Stress> effective)
 {
-  assert(effective.size() == n_points());
   inner_->set_initial_stress(effective);
+  start_from(effective);
+}
+
+void Nonlocal::start_from(std::span<const Stress> effective)
+{
+  assert(effective.size() == n_points());
   for (std::size_t q = 0; q < n_points(); ++q)
     committed_[q].stress = effective[q];
   has_trial_ = false;

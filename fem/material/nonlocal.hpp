@@ -41,6 +41,8 @@ public:
   std::size_t n_points() const override { return inner_->n_points(); }
   /// s begins with the initial stress as the inner material does: any field of it is kept, not only a uniform one.
   void set_initial_stress(std::span<const Stress> effective) override;
+  /// The same where the inner material has been brought to these stresses already.
+  void start_from(std::span<const Stress> effective);
   /// Cost: besides the inner material's, 15 multiplications for each pair of points nearer than 4 l.
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
   void commit() override;

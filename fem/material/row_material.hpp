@@ -12,8 +12,8 @@ class RowMaterial : public Material
 public:
   std::string name() const final { return name_; }
   std::size_t n_points() const final { return n_points_; }
-  void commit() final;
-  void rollback() final { has_trial_ = false; }
+  void commit() override;
+  void rollback() override { has_trial_ = false; }
   MaterialState pack() const final;
   void unpack(const MaterialState &state) final;
 

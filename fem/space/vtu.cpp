@@ -2,10 +2,11 @@
 #include "fem/space/vtu.hpp"
 
 #include "base/files/replace_file.hpp"
-#include "fem/space/unknowns.hpp"
 
 #include <deal.II/base/data_out_base.h>
+#include <deal.II/fe/fe_q.h>
 
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -49,10 +50,11 @@ Elements<dim> named(const std::vector<NodeField> &vectors, const std::vector<Poi
 
 /// Place of each node of an element in the order x fastest, as patches have it.
 template <int dim>
-std::vector<unsigned> patch_order(const dealii::DoFHandler<dim> &nodes, unsigned degree)
+std::vector<unsigned> patch_order(unsigned degree)
 {
+  const dealii::FE_Q<dim> element(degree);
   std::vector<unsigned> order;
-  for (const dealii::Point<dim> &point : nodes.get_fe().get_unit_support_points())
+  for (const dealii::Point<dim> &point : element.get_unit_support_points())
     {
       unsigned at = 0;
       for (int d = dim; d-- > 0;)
@@ -74,14 +76,13 @@ std::vector<float> cell_means(const std::vector<PointField> &fields, std::size_t
     }
   return means;
 }
-} // namespace
 
 template <int dim>
-void write_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, VtuTime when,
-               const std::vector<NodeField> &vectors, const std::vector<PointField> &means)
+void write_elements(const std::filesystem::path &path, const FiniteElementSpace &space, VtuTime when,
+                    const std::vector<NodeField> &vectors, const std::vector<PointField> &means)
 {
   const unsigned degree = space.mesh().degree;
-  const std::vector<unsigned> order = patch_order<dim>(space.unknowns().nodes(), degree);
+  const std::vector<unsigned> order = patch_order<dim>(degree);
   Elements<dim> elements = named<dim>(vectors, means);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
@@ -115,11 +116,12 @@ void write_vtu(const std::filesystem::path &path, const Discretisation<dim> &spa
   elements.write_vtu(text);
   write_replacing(path, text.str());
 }
+} // namespace
 
-template void write_vtu<1>(const std::filesystem::path &, const Discretisation<1> &, VtuTime,
-                           const std::vector<NodeField> &, const std::vector<PointField> &);
-template void write_vtu<2>(const std::filesystem::path &, const Discretisation<2> &, VtuTime,
-                           const std::vector<NodeField> &, const std::vector<PointField> &);
-template void write_vtu<3>(const std::filesystem::path &, const Discretisation<3> &, VtuTime,
-                           const std::vector<NodeField> &, const std::vector<PointField> &);
+void write_vtu(const std::filesystem::path &path, const FiniteElementSpace &space, VtuTime when,
+               const std::vector<NodeField> &vectors, const std::vector<PointField> &means)
+{
+  constexpr std::array of_dimension = {write_elements<1>, write_elements<2>, write_elements<3>};
+  of_dimension[space.dimension - 1](path, space, when, vectors, means);
+}
 } // namespace isostat

@@ -31,7 +31,6 @@ struct VtuTime
 /// the same state is the same bytes.   @pre the mesh is not shared out
 /// @throws RunFailure  the file cannot be written
 /// tested: tests/apps/soil_column_test.py, tests/apps/biaxial_test.py
-template <int dim>
-void write_vtu(const std::filesystem::path &path, const Discretisation<dim> &space, VtuTime when,
+void write_vtu(const std::filesystem::path &path, const FiniteElementSpace &space, VtuTime when,
                const std::vector<NodeField> &vectors, const std::vector<PointField> &means);
 } // namespace isostat

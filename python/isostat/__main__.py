@@ -29,9 +29,9 @@ PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isos
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
             "void_ratio_limits": "loosest and densest packing of a grading",
             "micromechanics": "forces, fabric and anisotropy of stored packings",
-            "soil_column": "layers of soil that are shaken or consolidate, with grains at the Gauss points on request",
-            "rve_replay": "one packing of a column again, alone",
-            "biaxial": "a block in plane strain: does a shear band form?"}
+            "soil_column": "layers of soil that are shaken or consolidate, or a block in which a shear band may form, with "
+                           "grains at the Gauss points on request",
+            "rve_replay": "one packing of a column again, alone"}
 
 
 def is_built(name):

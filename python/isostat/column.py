@@ -135,7 +135,10 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
 class ColumnResults(Results):
     """A results folder of soil_column or run(): as Results, with draw() for its figures."""
 
-    program = "soil_column"
+    @property
+    def program(self):
+        """Whose figures it has."""
+        return "biaxial" if self.scene.to_dict()["analysis"]["kind"] == "biaxial" else "soil_column"
 
     @property
     def scene(self):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """soil_column with a box of soil between walls whose surface is inclined: what it leaves, on how many ranks and after
 which restarts."""
+import functools
+import json
 import re
 import shutil
 import signal
@@ -151,4 +153,4 @@ class Box(ColumnTest):
         self.assertIn("the stable step of the stiffest element", result.stderr)
 
     def test_goes_on_where_it_was_stopped(self):
-        self.check_restart(signal.SIGKILL, ranks=2)
+        self.assert_goes_on(self.scene, signal.SIGKILL, resume=functools.partial(self.run_on_ranks, 2))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of soil_column share: a small scene, running the program, comparing what it leaves behind."""
 import os
+import shutil
 
 import h5py
 import numpy as np
@@ -81,11 +82,20 @@ class ColumnTest(AppTest):
     def run_on_ranks(self, n, *arguments):
         return self.run_command(self.command_on_ranks(n, *arguments))
 
-    def stop_when_saved(self, scene, how, *options, program="soil_column"):
-        """Starts `parts`, sends it a signal once it has a checkpoint, and returns what it said on stderr."""
+    def assert_goes_on(self, scene, how, *options, resume=None):
+        """A run that gets a signal once it has a checkpoint, and is resumed, leaves the same files as one that is not
+        stopped. Returns what it said on stderr.   resume: runs the rest, as run_column() does"""
+        options = (*options, *settings(output__checkpoint="1e-9 min"))
+        self.assert_done(self.run_column(scene, "-o", "whole", "--overwrite", *options))
+        shutil.rmtree(self.folder / "parts", ignore_errors=True)
         last = self.folder / "parts/checkpoint/last.h5"
-        return self.stop_when(last.exists, last, how,
-                              self.command(program, scene, "-o", "parts", "--no-figures", *options))[1]
+        said = self.stop_when(last.exists, last, how,
+                              self.command("soil_column", scene, "-o", "parts", "--no-figures", *options))[1]
+        self.assertTrue(last.exists(), said)
+        self.assertFalse((self.folder / "parts/summary.json").exists())
+        self.assert_done((resume or self.run_column)(scene, "-o", "parts", "--resume", *options))
+        self.assert_same_files("whole", "parts")
+        return said
 
     def check_ranks(self, *options):
         """The scene leaves the same files on one rank and on two."""
@@ -105,16 +115,6 @@ class ColumnTest(AppTest):
             for part in key.split("."):
                 expected, found = expected[part], found[part]
             self.assert_close(found, expected, tolerance, f"round-off of sums over the ranks ({key})")
-
-    def check_restart(self, with_signal, *options, ranks=1):
-        """A run that is stopped once it has a checkpoint, and continues, leaves the files of one that was not.
-        Returns what it said"""
-        options += tuple(settings(output__checkpoint="1e-9 min"))
-        self.assert_done(self.run_column(self.scene, "-o", "whole", *options))
-        said = self.stop_when_saved(self.scene, with_signal, *options)
-        self.assert_done(self.run_on_ranks(ranks, self.scene, "-o", "parts", "--resume", *options))
-        self.assert_same_files("whole", "parts")
-        return said
 
     def assert_same_files(self, one, other):
         """Checkpoints come when the clock says."""

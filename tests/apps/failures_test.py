@@ -19,7 +19,7 @@ class Failures(FailingRuns):
         self.every_call("element_test", self.write("scene.toml", SHORT_TEST), *SAVED, most=3)
 
     def test_biaxial(self):
-        self.every_call("biaxial", self.write("block.toml", FRICTION), *SAVED, most=2)
+        self.every_call("soil_column", self.write("block.toml", FRICTION), *SAVED, most=2)
 
     def test_soil_column(self):
         self.every_call("soil_column", self.write("column.toml", COLUMN), *SAVED, most=2)
@@ -69,7 +69,7 @@ class Failures(FailingRuns):
         whole = results(self.folder / "out")
         for reason in (errno.ENOLCK, errno.EOPNOTSUPP):
             self.empty()
-            code = self.run_and_stop(0.02, signal.SIGTERM, (self.folder / "out/checkpoint/last.h5", False), *arguments,
+            code = self.run_and_stop(0.02, signal.SIGTERM, (self.folder / "checkpoint/last.h5", False), *arguments,
                                      "-o", "out")
             self.assertEqual(code, 130)
             result, _ = self.run_failing([*command, "--resume"], "flock", 1, code=reason)

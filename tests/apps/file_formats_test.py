@@ -114,4 +114,4 @@ class FileFormats(GrainColumnTest):
             self.assert_done(self.run_column(SCENES / f"{name}.toml", "-o", name, "-q", *settings(**change)))
         self.assert_done(self.run_column(self.write("plate.toml", PLATE), "-o", "plate", "-q"))
         block = self.write("block.toml", ELASTIC.format(degree=1))
-        self.assert_done(self.run_app("biaxial", block, "-o", "block", "-q", "--no-figures"))
+        self.assert_done(self.run_column(block, "-o", "block", "-q"))

@@ -98,4 +98,4 @@ class PlateTest(ColumnTest):
         self.assertGreater(force[-1], MODULUS * way[-1] / 2 * 1, "the soil next to it helps")
 
     def test_goes_on_where_it_was_stopped(self):
-        self.check_restart(signal.SIGKILL, *settings(analysis__load_steps=60))
+        self.assert_goes_on(self.scene, signal.SIGKILL, *settings(analysis__load_steps=60))

@@ -282,7 +282,7 @@ class Reports(ReportTest):
             self.assertEqual(widths, sorted(widths, reverse=True))
             self.assertGreater(widths[0], widths[1])
             image = self.folder / f"{width}.png"
-            report = (self.runs / "cyclic/report.html").as_uri()
+            report = (self.runs / "rest/report.html").as_uri()
             subprocess.run([*command, f"--screenshot={image}", report], capture_output=True, check=True,
                            timeout=TIME_LIMIT)
             self.assertGreater(image.stat().st_size, 20000)
@@ -325,6 +325,6 @@ class OtherPrograms(ReportTest):
         self.assertIn("iquefied:", self.assert_whole("shaken"))
 
     def test_block(self):
-        self.make("biaxial", "block", SCENES / "biaxial/iwan.toml", "--set", "test.steps=4", "--set",
-                  "test.axial_strain=0.002", "--set", "output.map_every=1")
+        self.make("soil_column", "block", SCENES / "biaxial/iwan.toml", "--set", "analysis.load_steps=4", "--set",
+                  "analysis.axial_strain=0.002", "--set", "analysis.map_every=1")
         self.assertIn("Ended at its target, an axial strain of 0.2 %.", self.assert_whole("block"))

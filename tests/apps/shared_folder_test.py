@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 
-from biaxial_test import FRICTION
 from failing_runs import COLUMN, SAVED
 from support import ATTEMPTS, CYCLIC, TIME_LIMIT, AppTest, tiny_scene, wait_until
 
@@ -42,8 +41,7 @@ class SharedFolder(AppTest):
     def setUp(self):
         super().setUp()
         self.scenes = {"element_test": self.write("scene.toml", tiny_scene(stages=CYCLIC.format(steps=6000))),
-                       "soil_column": self.write("column.toml", COLUMN),
-                       "biaxial": self.write("block.toml", FRICTION)}
+                       "soil_column": self.write("column.toml", COLUMN)}
 
     def test_two_runs(self):
         """Of all programs at once: what is refused waits for five seconds first."""

@@ -60,5 +60,6 @@ class Slope(ColumnTest):
                                *DISTRIBUTED, *settings(analysis__duration="0.3 s"))
 
     def test_goes_on_where_it_was_stopped(self):
-        said = self.check_restart(signal.SIGTERM, *settings(output__profile_interval="0.1 s", analysis__duration="4 s"))
+        said = self.assert_goes_on(self.scene, signal.SIGTERM, *settings(output__profile_interval="0.1 s",
+                                                                         analysis__duration="4 s"))
         self.assertIn("continue with --resume", said)

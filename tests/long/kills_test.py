@@ -119,9 +119,9 @@ class Kills(AppTest):
         self.kill("soil_column", (scene, "-q", "--no-figures"), self.folder_of_run, ranks=(1, 2, 3))
 
     def test_biaxial(self):
-        self.kill("biaxial", (self.write("block.toml", FRICTION), *SAVED, "-q", "--no-figures"), self.folder_of_run)
+        self.kill("soil_column", (self.write("block.toml", FRICTION), *SAVED, "-q", "--no-figures"), self.folder_of_run)
 
     def test_block_of_grains(self):
         scene = self.write("rve.toml", tiny_scene(specimen=CELL, stages="# none"))
         self.assert_done(self.run_app("isostat", "library", scene, *FEW, "-n", "2", "-o", "library.h5", "-q"))
-        self.kill("biaxial", (self.write("block.toml", BLOCK), *SAVED, "-q", "--no-figures"), self.folder_of_run)
+        self.kill("soil_column", (self.write("block.toml", BLOCK), *SAVED, "-q", "--no-figures"), self.folder_of_run)

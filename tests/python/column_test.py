@@ -159,6 +159,16 @@ class ColumnTest(ToleranceTest):
         self.assertEqual(ours.scene, column.ColumnScene(scene).with_(**{"output.folder": ours.scene.folder}))
         self.assertEqual(ours.summary["points"], 20)
 
+    def test_a_biaxial_block_of_own_material_is_the_closed_form(self):
+        scene = column.ColumnScene(
+            mesh={"dimension": 2, "degree": 1}, water={"drainage": "dry"},
+            layer=[{"name": "sand", "thickness": "2 m", "cells": 2, "material": "user"}],
+            analysis={"kind": "biaxial", "confinement": "50 kPa", "axial_strain": 0.001, "load_steps": 2})
+        ours = column.run(scene, self.folder / "block", materials={"sand": Elastic()})
+        modulus = 2 * SHEAR / (1 - POISSON)
+        self.assert_close(ours.history["axial_stress"], 50e3 + modulus * ours.history["axial_strain"], 1e-9, "rounding")
+        self.assertEqual(ours.program, "biaxial")
+
     def test_a_consolidation_cuts_its_elements_where_water_drains(self):
         scene = column.ColumnScene(CONSOLIDATION)
         sand = {**scene.to_dict()["layer"][0], "material": "elastic", "shear_velocity": "200 m/s"}

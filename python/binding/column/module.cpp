@@ -2,7 +2,6 @@
 // The soil column. A module of its own, because it needs deal.II and MPI, which `import isostat` does not load.
 // tested: tests/python/column_test.py
 #include "apps/common/interrupt.hpp"
-#include "apps/common/summary.hpp"
 #include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
 #include "apps/soil_column/run.hpp"
@@ -102,10 +101,12 @@ void run(const ColumnScene &scene, const std::string &output, const py::dict &ma
   const RunResult result = run_column(request);
   if (!ranks().first())
     return;
-  const std::string text = report_of(result.summary, scene).text();
+  const std::string text = result.summary.text();
   write_replacing(request.folder / "summary.txt", text);
   if (!quiet)
     fmt::print("{}{}", text, to_text(result.times));
+  if (!result.failure.empty())
+    throw RunFailure(result.failure);
 }
 
 /// (n, 2) of (n, 6, 6).

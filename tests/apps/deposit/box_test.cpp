@@ -62,7 +62,7 @@ TEST(BoxScene, PlatesComeThroughTextAndGoToTheMesh)
       "s");
   EXPECT_EQ(parse_column_scene(to_toml(scene), "again"), scene);
   EXPECT_EQ(scene.plate.displacement, -0.2);
-  EXPECT_EQ(scene.plate.newton.relaxation_iterations, 9u);
+  EXPECT_EQ(scene.load_steps.newton.relaxation_iterations, 9u);
   EXPECT_EQ(scene.plate.axis(), 0u);
   EXPECT_EQ(scene.plate.inwards(), -1);
   const MeshSpec mesh = mesh_spec(scene);
@@ -84,6 +84,41 @@ TEST(BoxScene, RefusesPlatesThatAreNone)
   expect_refused(with_plate(), {"load.kind", "\"none\""}, {"load.kind=step", "load.amplitude=1 kPa"});
   expect_refused(with_plate("", "max_iterations = 0\n"), {"analysis.max_iterations", "relaxation_iterations"});
   expect_refused(box(), {"analysis.on", "only to plate"}, {"analysis.on=base"});
+}
+
+std::string block(const std::string &more = "")
+{
+  return sand + "[mesh]\ndimension = 2\ncells_across = 4\n" + dry + "[analysis]\nkind = \"biaxial\"\n" + more;
+}
+
+TEST(BiaxialScene, ComesThroughText)
+{
+  const ColumnScene scene = parse_column_scene(
+      block("confinement = \"50 kPa\"\naxial_strain = -0.01\ntest_duration = \"7 s\"\nmap_every = 2\nload_steps = 3\n"
+            "relaxation_iterations = 9\nnonlocal = { length = \"0.1 m\", stiffness = 2 }\n"
+            "[analysis.weak]\ncells = 2\ncolumn = 1\nrow = 3\nfactor = 0.7\nrelative_density = 0.5\nrealisation = 4\n"),
+      "s");
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "again"), scene);
+  EXPECT_EQ(scene.biaxial.nonlocal.length, 0.1);
+  EXPECT_EQ(scene.biaxial.weak.grains.relative_density, 0.5);
+  const double width = scene.mesh.width / 4, height = scene.height() / cells_up(scene);
+  for (unsigned column = 0; column < 4; ++column)
+    for (unsigned row = 0; row < cells_up(scene); ++row)
+      EXPECT_EQ(in_weak_zone(scene, {(column + 0.5) * width, 0, (row + 0.5) * height}),
+                column >= 1 && column < 3 && row >= 3 && row < 5);
+}
+
+TEST(BiaxialScene, RefusesBlocksThatAreNone)
+{
+  expect_refused(block("[analysis.weak]\ncells = 4\ncolumn = 1\n"), {"analysis.weak.column", "out of the block"});
+  expect_refused(block("weak = { cells = 4, row = 9 }\n"), {"analysis.weak", "analysis.weak.row", "out of the block"});
+  expect_refused(block(), {"mesh.dimension", "must be 2"}, {"mesh.dimension=1"});
+  expect_refused(block(), {"mesh.points", "Give points = 3"},
+                 {"water.drainage=coupled", "layer.0.permeability=0 m/s", "mesh.points=2"});
+  expect_refused(block("nonlocal.length = \"0.1 m\"\n"), {"analysis.nonlocal.length", "needs relaxation"});
+  expect_refused(block("max_iterations = 0\n"), {"analysis.max_iterations", "relaxation_iterations"});
+  expect_refused(block(), {"load.surcharge", "has no effect on a biaxial block"}, {"load.surcharge=1 kPa"});
+  expect_refused(block(), {"output.depths", "has no effect on a biaxial block"}, {"output.depths=[\"1 m\"]"});
 }
 
 TEST(BoxScene, RefusesKeysOfABoxWhereTheSidesAreTied)

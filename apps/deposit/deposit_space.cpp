@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/deposit/deposit_space.hpp"
+
+#include "fem/solve/dynamics.hpp"
+#include "fem/water/drainage.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace isostat
+{
+namespace
+{
+/// M of a layer at a height, infinite if its material does not say. Pa
+double constrained_modulus(const ColumnScene &scene, const SoilProfile &soil, const ColumnLayer &layer, double z,
+                           const UserMaterials &user)
+{
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  if (layer.material == LayerMaterial::grains) // which costs a specimen
+    return unknown;
+  const std::array<Stress, 1> stress{level_stress(scene, soil, layer.k0, z)};
+  try
+    {
+      const std::unique_ptr<Material> material = layer_material(layer, 1, user);
+      material->set_initial_stress(stress);
+      std::array<WaveModuli, 1> moduli;
+      material->wave_moduli(moduli);
+      return moduli[0].p;
+    }
+  catch (const std::exception &) // which soil_material() meets again, unless it is the one point that it minds
+    {
+      return unknown;
+    }
+}
+
+MeshSpec cut_mesh(const ColumnScene &scene, const UserMaterials &user)
+{
+  MeshSpec mesh = mesh_spec(scene);
+  if (scene.analysis.kind != AnalysisKind::consolidation)
+    return mesh;
+  std::vector<double> moduli;
+  double top = mesh.soil.height();
+  for (const ColumnLayer &layer : scene.layers)
+    {
+      moduli.push_back(constrained_modulus(scene, mesh.soil, layer, top - layer.thickness / 2, user));
+      top -= layer.thickness;
+    }
+  const auto planes = drainage_planes(mesh, {Face::surface}, moduli, scene.analysis.first_time);
+  mesh.fine.assign(planes.begin(), planes.end());
+  return mesh;
+}
+
+Supports supports_of(const ColumnScene &scene)
+{
+  if (scene.analysis.kind == AnalysisKind::biaxial)
+    return {.fixed = {{Face::base, 2}, {Face::surface, 2}}};
+  Supports supports = shaken_supports(scene.base.compliant(), scene.mesh.sides);
+  if (scene.analysis.kind != AnalysisKind::plate)
+    return supports;
+  supports.fixed.push_back({patch_face(0), scene.plate.axis()});
+  supports.fixed.push_back({patch_face(0), 1}); // plane strain
+  if (scene.plate.rough)
+    supports.fixed.push_back({patch_face(0), 2 - scene.plate.axis()});
+  return supports;
+}
+
+template <int dim>
+std::unique_ptr<FiniteElementSpace> discretised(const ColumnScene &scene, const UserMaterials &user)
+{
+  return std::make_unique<Discretisation<dim>>(cut_mesh(scene, user), supports_of(scene),
+                                               scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
+}
+} // namespace
+
+std::unique_ptr<const FiniteElementSpace> deposit_space(const ColumnScene &scene, const UserMaterials &user)
+{
+  constexpr std::array of_dimension = {discretised<1>, discretised<2>, discretised<3>};
+  std::unique_ptr<FiniteElementSpace> space = of_dimension[scene.mesh.dimension - 1](scene, user);
+  if (scene.analysis.kind != AnalysisKind::biaxial)
+    return space;
+  std::vector<unsigned> &fixed = space->fixed_dofs;
+  fixed.push_back(static_cast<unsigned>(space->find_dof({scene.mesh.width / 2, 0, 0}, 0)));
+  for (unsigned i = 1; i < space->displacement_vector().locally_owned_size(); i += 3)
+    fixed.push_back(i);
+  std::ranges::sort(fixed);
+  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+  return space;
+}
+} // namespace isostat
