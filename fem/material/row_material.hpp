@@ -10,12 +10,12 @@ namespace isostat
 class RowMaterial : public Material
 {
 public:
-  std::string name() const final { return name_; }
-  std::size_t n_points() const final { return n_points_; }
+  std::string name() const override { return name_; }
+  std::size_t n_points() const override { return n_points_; }
   void commit() override;
   void rollback() override { has_trial_ = false; }
-  MaterialState pack() const final;
-  void unpack(const MaterialState &state) final;
+  MaterialState pack() const override;
+  void unpack(const MaterialState &state) override;
 
 protected:
   /// @param row  numbers of a point, at first 0

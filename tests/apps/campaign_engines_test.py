@@ -127,6 +127,6 @@ class Engines(AppTest):
         leader = self.start(self.campaign("out"))
         wait_until(lambda: all_children(leader), "a run", leader)
         leader.send_signal(signal.SIGSTOP)
-        self.assert_refused(self.run_command(self.campaign("out")), "at work", "out")
+        self.assert_refused(self.run_command(self.campaign("out")), "another program is using it", "out")
         leader.send_signal(signal.SIGCONT)
         self.assertEqual(self.ended(leader)[0], 0)

@@ -171,7 +171,7 @@ class SpecimenMistakes(AppTest):
         scene = self.write("scene.toml", tiny_scene(specimen="void_ratio = 0.3"))
         stiff = ("--set", "contact.young=10 GPa")
         self.assert_refused(self.run_test(scene, "-o", "out", "--overwrite", *stiff), "cannot be reached", "0.3000",
-                            "without friction", "the densest there is", "periodic-cell")
+                            "without friction", "the densest possible", "periodic-cell")
         self.assertEqual((old / "scene.toml").read_text(encoding="utf-8"), "# old")
         self.assert_refused(self.run_test(scene, "-o", "results/new", *stiff), "cannot be reached")
         self.assertFalse((self.folder / "results").exists(), "a refused scene leaves no empty folders")

@@ -23,8 +23,8 @@ MOST_BYTES = 2.5e6  # of a report
 def page(folder, *names, program="element_test", code=0):
     """The report of a results folder, left in this process with no more than these figures: quicker than a program."""
     drawing = importlib.import_module(f"figures.{program}").DRAWING
-    figures = {name: drawing.figures[name] for name in names}
-    with mock.patch.object(drawing, "figures", figures), contextlib.redirect_stdout(io.StringIO()):
+    figures = [drawing.figures[name] for name in names]
+    with mock.patch.object(drawing, "all", figures), contextlib.redirect_stdout(io.StringIO()):
         found = run.leave(folder, program)
     assert found == code, f"{folder}: exit code {found}"
     return (folder / "report.html").read_text(encoding="utf-8")

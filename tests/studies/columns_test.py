@@ -10,7 +10,7 @@ import types
 import h5py
 
 from isostat.campaign import engines, study
-from studies.column_error import plan as error_plan
+from studies import column_error as error_plan
 from support import BIN, AppTest
 
 sys.argv[0] = str(BIN / "isostat")  # next to the programs

@@ -146,7 +146,7 @@ TEST_F(TextTables, BadGrainsAndWalls)
 TEST_F(TextTables, PlacesAndDensitiesThatAreNone)
 {
   EXPECT_THAT(message_of<InputError>([&] { import_tables(folder / "absent", LinearRolling{}, 2650); }),
-              HasSubstr("absent: neither comp_walls_step0.csv nor comp_walls_step0.csv.gz is there"));
+              HasSubstr("absent: neither comp_walls_step0.csv nor comp_walls_step0.csv.gz exists"));
   EXPECT_THROW(import_tables(folder, LinearRolling{}, 0), InputError);
 }
 } // namespace
