@@ -69,7 +69,7 @@ class Failures(FailingRuns):
         whole = results(self.folder / "out")
         for reason in (errno.ENOLCK, errno.EOPNOTSUPP):
             self.empty()
-            code = self.run_and_stop(0.02, signal.SIGTERM, (self.folder / "checkpoint/last.h5", False), *arguments,
+            code = self.run_and_stop(0.02, signal.SIGTERM, (self.folder / "out/checkpoint/last.h5", False), *arguments,
                                      "-o", "out")
             self.assertEqual(code, 130)
             result, _ = self.run_failing([*command, "--resume"], "flock", 1, code=reason)
