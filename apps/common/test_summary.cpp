@@ -134,11 +134,12 @@ std::optional<ShearExtremes> shear_extremes(const RunHistory &run, const Scene &
   return all;
 }
 
-/// Of a static drive, until it liquefies: increments that did not lead to a neighbouring state of balance, by the
-/// share of the stored elastic energy that their relaxation took.
+/// Of a static drive, until it liquefies: increments that did not lead to a neighbouring state of balance. Relaxation
+/// took more than 1 % of the stored elastic energy there, and more than three times what it took in the increment
+/// before: an increment has its loss at any stress, which is a large share of the little that is stored near p' = 0.
 void add_jumps(const RunHistory &run, double p0, Summary &summary)
 {
-  constexpr double jump = 0.01; // elastic increments lose 1e-6 to 1e-3, docs/theory.md, section 17
+  constexpr double jump = 0.01, more = 3;
   enum
   {
     stress,
@@ -151,15 +152,19 @@ void add_jumps(const RunHistory &run, double p0, Summary &summary)
   double largest = 0, from = 0;
   for (std::size_t row = 1; row < rows.n_rows() && rows(row - 1, flows) == 0; ++row)
     {
-      const double share = rows(row, relaxed) / rows(row - 1, elastic);
-      n += share > jump;
-      if (share > largest)
-        largest = share, from = rows(row - 1, stress) / p0;
+      const double stored = rows(row - 1, elastic), lost = rows(row, relaxed);
+      if (!(stored > 0 && lost > jump * stored && lost > more * rows(row - 1, relaxed)))
+        continue;
+      ++n;
+      if (lost / stored > largest)
+        largest = lost / stored, from = rows(row - 1, stress) / p0;
     }
-  summary.row("jumps",
-              "{} increments lost more than {:g} % of the elastic energy, at most {:.2g} %, from p'/p0' = {:.3f}",
-              Value{"jumps.number", n}, jump / percent, Value{"jumps.largest", largest, percent},
-              Value{"jumps.p_ratio_before", from});
+  summary["jumps.number"] = n;
+  if (n > 0)
+    summary.row("jumps", "{}, at most {:.2g} % of the elastic energy lost in an increment, from p'/p0' = {:.3f}", n,
+                Value{"jumps.largest", largest, percent}, Value{"jumps.p_ratio_before", from});
+  else
+    summary.row("jumps", "none");
 }
 
 /// Reports what the rows of a history hold.

@@ -135,6 +135,8 @@ void check_biaxial(const SceneDocument &document, const ColumnScene &scene)
   refuse_beside_block(document, scene);
   if (scene.mesh.dimension != 2)
     document.refuse("mesh.dimension", "must be 2 in a biaxial block, which is one in plane strain.");
+  if (scene.biaxial.axial_strain == 0)
+    document.refuse("analysis.axial_strain", "must not be 0, or nothing moves. Give for example 0.05.");
   if (scene.water.drainage == Drainage::coupled && scene.mesh.points > 0 && scene.mesh.points < 3)
     document.refuse("mesh.points", fmt::format("must be 3 or 4 in an undrained block, and is {}: with fewer, elements "
                                                "have modes that soil of constant volume does not resist. Give points = "

@@ -26,17 +26,19 @@ class TestFrames:
     """One frame for each snapshot of an element test."""
 
     def __init__(self, folder):
-        self.columns, self.files = Run(folder).columns, sorted((folder / "snapshots").glob("snapshot_*.h5"))
+        run = Run(folder)
+        self.columns, self.files = run.columns, sorted((folder / "snapshots").glob("snapshot_*.h5"))
+        self.load, self.label = ("tau_xy", r"$\tau_{xy}$ (kPa)") if run.shear else ("q", "$q$ (kPa)")
         self.length = len(self.files)
         if self.length:
             self.mean_force = forces(self.files[0]).mean()
 
     def begin(self, figure):
         self.packing, path = figure.subplots(1, 2)
-        path.plot(self.columns["p"] / 1e3, self.columns["q"] / 1e3, color=GREY, linewidth=0.6)
+        path.plot(self.columns["p"] / 1e3, self.columns[self.load] / 1e3, color=GREY, linewidth=0.6)
         self.dot, = path.plot([], [], "o", color=BLUE)
         path.set_xlabel("$p'$ (kPa)")
-        path.set_ylabel("$q$ (kPa)")
+        path.set_ylabel(self.label)
 
     def draw(self, k):
         self.packing.clear()
@@ -44,7 +46,7 @@ class TestFrames:
         with h5py.File(self.files[k]) as file:
             step = file["snapshot"].attrs["step"]
         row = int(np.argmin(np.abs(self.columns["step"] - step)))
-        self.dot.set_data([self.columns["p"][row] / 1e3], [self.columns["q"][row] / 1e3])
+        self.dot.set_data([self.columns["p"][row] / 1e3], [self.columns[self.load][row] / 1e3])
 
 
 class ColumnFrames:
@@ -80,13 +82,14 @@ def animate(folder, out, rate):
     """Writes it.   Raises BadInput where there is nothing to show, or no program for this kind of file"""
     frames = (ColumnFrames if (folder / "grains").is_dir() else TestFrames)(folder)
     if not frames.length:
-        raise BadInput(f"{folder}: has no snapshots. Run it with output.snapshots = \"strain\", a column with "
-                       "grains.snapshot_depths.")
+        raise BadInput(f"{folder}: has no two moments of stored packings. Run it with output.snapshots = \"strain\", a column "
+                       "with grains.snapshot_depths and a shorter grains.snapshot_interval.")
     name = {".gif": "pillow", ".mp4": "ffmpeg"}.get(out.suffix)
     if not name:
         raise BadInput(f"{out}: must end with .gif or .mp4")
     if not animation.writers.is_available(name):
         raise BadInput(f"{out}: needs {name}: apt-get install {'python3-pil' if name == 'pillow' else name}")
+    out.parent.mkdir(parents=True, exist_ok=True)
     use_style()
     figure = plt.figure(figsize=(7.2, 3.4), layout="constrained")
     frames.begin(figure)
@@ -105,7 +108,8 @@ def main():
     matplotlib.use("Agg")
     out = options.output or options.results / "figures/animation.gif"
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
+        if not options.rate > 0:
+            raise BadInput(f"--rate = {options.rate:g}; must be > 0, frames per second.")
         animate(options.results, out, options.rate)
     except (BadInput, OSError, KeyError) as error:
         note(error)

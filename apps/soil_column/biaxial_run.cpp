@@ -158,8 +158,12 @@ public:
   explicit BiaxialRun(const ColumnRequest &request) : AnalysisRun<Statics>(request, block_settings(request.scene))
   {
     restore();
-    if (resumed_)
-      resumed_->get(result_);
+    if (!resumed_)
+      return;
+    resumed_->get(result_);
+    if (run_.n_steps() > scene_.load_steps.number)
+      throw InputError(fmt::format("{}: has {} steps, of {}: it is damaged. Start again with --overwrite.",
+                                   resumed_->file, run_.n_steps(), scene_.load_steps.number));
   }
 
 private:

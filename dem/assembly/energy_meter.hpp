@@ -43,8 +43,7 @@ struct EnergyMemory
 ///
 /// and what each pair has dissipated, in the order of pairs, so that no sum depends on lists or threads.
 /// Before the start all sums are zero.
-/// tested: tests/verification/energy_balance_test.cpp, cell_strain_test.cpp; going on:
-/// tests/dem/assembly/assembly_test.cpp
+/// tested: tests/verification/energy_balance_test.cpp; continued: tests/dem/assembly/assembly_test.cpp
 class EnergyMeter
 {
 public:

@@ -17,6 +17,7 @@ namespace
 {
 constexpr std::uint64_t servo_interval = 20;
 constexpr int settled = 3;                  ///< checks in a row with stresses on target
+constexpr double least_share = 0.01;        ///< of an increment: strains below it say nothing about the stiffness
 constexpr double relaxed_over_affine = 0.6; ///< stiffness of grains that find their places: where the iteration begins
 
 using Components = Eigen::Matrix<double, 6, 1>; ///< xx, yy, zz, yz, xz, xy; of strains the last three are gamma
@@ -130,11 +131,13 @@ void Rve::run_mixed(const MixedIncrement &own)
 
 /// Parts of the prescribed strain, each with strains that bring the controlled stresses c to their share of the way,
 ///     K_cc d eps_c = target_c - sigma_c - K_cp d eps_p,
-/// then without a prescribed part until they are there. K as in static_servo(), corrected after each part (Broyden).
+/// then without a prescribed part until they are there. K as in static_servo(), corrected after each part (Broyden)
+/// whose strain is large enough to tell K from what is left of the imbalance. It begins in balance.
 void Rve::run_mixed_balanced(const MixedIncrement &own, const StaticStepping &stepping)
 {
   const Components controlled = stresses(own.controlled.cast<double>());
   const Mat3 prescribed = own.gradient - gradient_of(strains(own.gradient).cwiseProduct(controlled));
+  run_balanced(Mat3::Zero(), stepping);
   const Components start = stresses(assembly_.stress()), way = stresses(own.stress) - start;
   const double parts = std::ceil(std::max(strain_measure(prescribed) / stepping.increment, 1e-9));
   const std::uint64_t first = cost_.steps;
@@ -165,7 +168,8 @@ void Rve::run_mixed_balanced(const MixedIncrement &own, const StaticStepping &st
       run_balanced(given + gradient_of(followed), stepping);
       travelled += followed.cwiseAbs().maxCoeff();
       const Components answer = stresses(assembly_.stress()) - now;
-      stiffness += (answer - stiffness * strain) * strain.transpose() / strain.squaredNorm();
+      if (strain.norm() > least_share * stepping.increment)
+        stiffness += (answer - stiffness * strain) * strain.transpose() / strain.squaredNorm();
       now += answer;
     }
 }

@@ -35,9 +35,11 @@ class Animations(AppTest):
     def test_what_it_refuses(self):
         fixture.packings(self.folder / "run")
         for words, said in ((("run", "-o", "film.avi"), "film.avi: must end with .gif or .mp4"),
+                            (("run", "--rate", "0"), "--rate = 0; must be > 0"),
                             (("nowhere",), "nowhere/history.csv: No such file")):
             result = self.animate(*words)
             self.assertEqual(result.returncode, 2)
             self.assertIn(said, result.stderr)
+        self.assertFalse((self.folder / "nowhere").exists())
         (self.folder / "run/grains/d0.pvd").unlink()
-        self.assertIn("run: has no snapshots. Run it with", self.animate("run").stderr)
+        self.assertIn("run: has no two moments of stored packings. Run it with", self.animate("run").stderr)

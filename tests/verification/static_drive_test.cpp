@@ -97,6 +97,13 @@ TEST(StaticDrive, EveryRowIsInBalanceAndLoadsTurnWhereTheyShould)
     }
 }
 
+TEST(StaticDrive, LoadsTurnWhereTheyShouldThoughOneIncrementIsMoreThanAHalfCycle)
+{
+  for (const std::string domain : {"periodic-cell", "rigid-box"})
+    for (const Observation &turn : run(programme(cyclic(2, 10e3), 5e-5), in(domain)).watcher.turns)
+      EXPECT_NEAR_BECAUSE(std::abs(turn.q), 10e3, 300, "a five-hundredth of an increment is some 40 Pa");
+}
+
 TEST(StaticDrive, PathsConvergeInTheIncrementAndTheTolerance)
 {
   const auto at_turn = [](double increment, double tolerance) {
@@ -188,7 +195,7 @@ TEST(StaticDrive, GoesThroughLiquefactionAndReversals)
   const Result found = run(programme(stage, 1e-4), test::periodic_specimen(300, 11));
   EXPECT_TRUE(found.state.undrained.liquefaction);
   EXPECT_GT(found.state.undrained.reversals, 0u);
-  EXPECT_BELOW_BECAUSE(found.watcher.p_before, 10e3,
+  EXPECT_BELOW_BECAUSE(found.watcher.p_before, 15e3,
                        "p' is to fall by 2 kPa in an increment; whole ones came no nearer to the onset than 20 kPa");
   EXPECT_GT(found.watcher.lost_before, 0);
   EXPECT_BELOW_BECAUSE(found.watcher.worst, 0.0101, "0.01 is asked for, without a network too");
@@ -201,7 +208,7 @@ TEST(StaticDrive, AgreesWithASlowDynamicTestWhereFrictionIsGone)
   Programme fine = programme(test::sheared_to<UndrainedMonotonic>(2e-3), 1e-5), dynamic = fine;
   dynamic.drive = {};
   const Watcher still = run(fine, smooth).watcher, slow = run(dynamic, smooth).watcher;
-  EXPECT_BELOW_BECAUSE(still.last.p, 180e3, "rough grains hold 200 kPa; these 157, others less than 100");
+  EXPECT_BELOW_BECAUSE(still.last.p, 165e3, "rough grains hold 200 kPa; these 157, others less than 100");
   EXPECT_NEAR_BECAUSE(still.last.p / slow.last.p, 1, 0.05, "1 % was seen; contacts yield in all increments");
 }
 

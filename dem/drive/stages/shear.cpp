@@ -24,7 +24,7 @@ constexpr double share_where_kept = 0.2;              ///< of an increment: stre
 constexpr double largest_fall = 0.01;                 ///< of p' in an increment, of p0'
 constexpr double modulus_over_affine = 0.5;           ///< after a reversal grains give way: 0.55 to 0.7 was seen
 
-/// Driven strain in which p' falls by the largest fall, if it continues as in the last increment [-].
+/// Strain, by its largest component, in which p' falls by the largest fall if it falls as in the last increment [-].
 double strain_of_fall(DriveState &state, const Vec3 &stress)
 {
   LastIncrement &last = state.increment;
@@ -125,7 +125,8 @@ Conditions ShearStage::conditions(const StageFigures &reached) const
 void ShearStage::load_from_rest(const StageContext &c, double present) const
 {
   const double affine = affine_modulus(c.assembly.live_contacts(), c.assembly.volume(), mode().constant_volume(1));
-  start_loading(c.state.loading, present, modulus_over_affine * affine);
+  // An upper bound does not let the first increment of a static drive pass the next turn.
+  start_loading(c.state.loading, present, (c.drive.on ? 1 : modulus_over_affine) * affine);
 }
 
 void ShearStage::note_inertia(const StageContext &c, const Observation &seen)

@@ -67,7 +67,7 @@ protected:
   /// Moves on by one step of driven strain and returns it [-].
   double driven_step(const StageContext &c, const Observation &seen) const;
   /// driven_step() of a static drive: the whole increment, or what the slope of the load leaves until it turns; at
-  /// constant volume, p' falls by about a hundredth of p0' at most, which resolves the onset of liquefaction.
+  /// constant volume, it aims at a fall of p' by a hundredth of p0', where no stress is kept.
   double increment(const StageContext &c, const Observation &seen) const;
   /// Load at which the present direction turns, Pa; of infinite amount: it does not.
   virtual double turning_load(const DriveState &state) const

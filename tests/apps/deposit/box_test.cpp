@@ -117,6 +117,7 @@ TEST(BiaxialScene, RefusesBlocksThatAreNone)
                  {"water.drainage=coupled", "layer.0.permeability=0 m/s", "mesh.points=2"});
   expect_refused(block("nonlocal.length = \"0.1 m\"\n"), {"analysis.nonlocal.length", "needs relaxation"});
   expect_refused(block("max_iterations = 0\n"), {"analysis.max_iterations", "relaxation_iterations"});
+  expect_refused(block(), {"analysis.axial_strain", "must not be 0"}, {"analysis.axial_strain=0"});
   expect_refused(block(), {"load.surcharge", "has no effect on a biaxial block"}, {"load.surcharge=1 kPa"});
   expect_refused(block(), {"output.depths", "has no effect on a biaxial block"}, {"output.depths=[\"1 m\"]"});
 }

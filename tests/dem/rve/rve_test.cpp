@@ -262,6 +262,19 @@ TEST_P(RveMixedControl, ReachesAShearStress)
   EXPECT_GT(rve.save().grains.cell.deformation(0, 1), before);
 }
 
+TEST(Rve, MixedControlInBalanceBeginsWithAnElementThatWasStrainedAtARate)
+{
+  Rve fast(specimen(), {});
+  ASSERT_EQ(fast.undrained(test::simple_shear(2e-3)).outcome, RveOutcome::accepted);
+  Rve still(fast.snapshot(), {.stepping = StaticStepping{}});
+  const Mat3 target = still.stress();
+  MixedIncrement hold{.stress = 0.5 * (target + target.transpose())};
+  hold.controlled.setConstant(true);
+  const RveResponse r = still.advance(hold);
+  ASSERT_EQ(r.outcome, RveOutcome::accepted) << r.reason;
+  EXPECT_NEAR_BECAUSE(r.stress.trace() / target.trace(), 1, 2e-3, "the tolerance of the increment, 1e-3");
+}
+
 TEST(Rve, ImpossibleControlIsRejected)
 {
   Rve rve(specimen(), {});
