@@ -46,6 +46,7 @@ STATED = {
         "analysis.kind": "A consolidation needs", "analysis.last_time": "After `first_time`",
         "analysis.duration": "At most 1e15 time steps", "analysis.from": "on a boundary between elements",
         "analysis.to": "likewise", "analysis.displacement": "less than the extent of the soil",
+        "analysis.axial_strain": "not 0",
         "analysis.max_iterations": "0: relaxation alone", "analysis.nonlocal.length": "needs max_iterations = 0",
         "analysis.weak.cells": "The square lies in the block", "output.depths": "Within the soil",
         "output.profile_interval": "", "output.x": "Of a strip"},

@@ -36,7 +36,7 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
 
 /// Headers that the scenes of one program alone have.
 constexpr std::pair<const char *, const char *> programs[] = {
-    {"[[layer]]", "soil_column"}, {"[soil]", "soil_column"}, {"[[stage]]", "element_test"}, {"[[curve]]", "isostat calibrate"}};
+    {"[[layer]]", "soil_column"}, {"[[stage]]", "element_test"}, {"[[curve]]", "isostat calibrate"}};
 
 /// @throws InputError  the scene is one of another program
 void check_program(const std::string &scene, const char *name)

@@ -22,7 +22,7 @@ constexpr Key of_block[] = {
    .text = "Isotropic effective stress at the start. With the initial pore pressure it acts on the sides throughout."},
   {.path = "axial_strain", .field = member<&Biaxial::axial_strain>, .value = "0.05", .range = {-0.5, 0.5},
    .reason = "because the mesh takes strains as small, and a half is far beyond",
-   .text = "Final displacement of the top over the height, compression positive."},
+   .text = "Final displacement of the top over the height, compression positive; not 0."},
   {.path = "test_duration", .field = member<&Biaxial::duration>, .unit = unit::s, .value = "100 s",
    .range = positive, .text = "Duration of the test; matters only where water moves."},
   {.path = "map_every", .field = member<&Biaxial::map_every>, .value = "5", .range = counts, .reason = one_or_more,

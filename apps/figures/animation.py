@@ -82,8 +82,8 @@ def animate(folder, out, rate):
     """Writes it.   Raises BadInput where there is nothing to show, or no program for this kind of file"""
     frames = (ColumnFrames if (folder / "grains").is_dir() else TestFrames)(folder)
     if not frames.length:
-        raise BadInput(f"{folder}: has no two moments of stored packings. Run it with output.snapshots = \"strain\", a column "
-                       "with grains.snapshot_depths and a shorter grains.snapshot_interval.")
+        raise BadInput(f"{folder}: has no two moments of stored packings. Run it with output.snapshots = \"strain\", a "
+                       "column with grains.snapshot_depths and a shorter grains.snapshot_interval.")
     name = {".gif": "pillow", ".mp4": "ffmpeg"}.get(out.suffix)
     if not name:
         raise BadInput(f"{out}: must end with .gif or .mp4")

@@ -132,7 +132,7 @@ void Rve::run_mixed(const MixedIncrement &own)
 /// Parts of the prescribed strain, each with strains that bring the controlled stresses c to their share of the way,
 ///     K_cc d eps_c = target_c - sigma_c - K_cp d eps_p,
 /// then without a prescribed part until they are there. K as in static_servo(), corrected after each part (Broyden)
-/// whose strain is large enough to tell K from what is left of the imbalance. It begins in balance.
+/// whose strain is large enough to distinguish K from the remaining imbalance. It begins in balance.
 void Rve::run_mixed_balanced(const MixedIncrement &own, const StaticStepping &stepping)
 {
   const Components controlled = stresses(own.controlled.cast<double>());

@@ -118,8 +118,8 @@ public:
   /// does not depend on how fast the element was strained before.
   RveResponse relax(const BalanceSpec &spec = {});
   /// Prescribed strain and target stress: drained, K0, constant p' and other tests. Rejected at once: a target that
-  /// needs tension, strain and stress for one component. Rejected on the way: the servo strains it by more than 0.1 (with
-  /// stepping amounts are added up).
+  /// needs tension, strain and stress for one component. Rejected on the way: the servo strains it by more than 0.1
+  /// (with stepping amounts are added up).
   RveResponse advance(const MixedIncrement &increment);
 
   /// Cauchy effective stress, Pa, tension positive, laboratory.
