@@ -26,17 +26,18 @@ kind = "biaxial"
 axial_strain = 0.01
 load_steps = 2
 """
-FRICTION = """title = "friction"
+TWO_HIGH = """title = "{title}"
 [mesh]
 dimension = 2
-cells_across = 2
+cells_across = {across}
 degree = 1
 [water]
 drainage = "dry"
 [[layer]]
 thickness = "2 m"
 cells = 2
-material = "mohr_coulomb"
+"""
+FRICTION = TWO_HIGH.format(title="friction", across=2) + """material = "mohr_coulomb"
 shear_modulus = "50 MPa"
 poisson_ratio = 0.25
 friction_angle = "36 deg"
@@ -47,17 +48,7 @@ kind = "biaxial"
 axial_strain = 0.02
 load_steps = 10
 """
-GRAINS = """title = "two elements"
-[mesh]
-dimension = 2
-cells_across = 1
-degree = 1
-[water]
-drainage = "dry"
-[[layer]]
-thickness = "2 m"
-cells = 2
-material = "grains"
+GRAINS = TWO_HIGH.format(title="two elements", across=1) + """material = "grains"
 [grains]
 library = "library.h5"
 inertial_number = 1e-3

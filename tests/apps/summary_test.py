@@ -97,6 +97,13 @@ class Summary(AppTest):
         for name in ("cyclic response", "largest indicator"):
             self.assertNotIn(f"\n  {name}", self.text)
 
+    def test_every_balanced_state_has_a_row(self):
+        """With what its relaxation took; few grains have no jump in a short test."""
+        self.leave("still", SHEAR, "--no-figures", "--set", "motion.drive=static", without=("strain_rate",))
+        self.assertEqual((self.line("jumps"), self.numbers["jumps"]["number"]), ("none", 0))
+        self.assertGreaterEqual(len(self.history["relaxed"]), 5, "2e-4 in increments of 5e-5, and the start")
+        self.assertTrue((self.history["relaxed"] >= 0).all())
+
     def test_of_two_stages_the_stress_ratio_is_of_one_of_them(self):
         self.leave("two", SHEAR + '[[stage]]\nkind = "compress"\npressure = "20 kPa"\nmax_steps = 20000\n' + SHEAR,
                    "--no-figures")
