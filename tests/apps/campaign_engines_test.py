@@ -99,14 +99,15 @@ class Engines(AppTest):
     def test_leader_ends(self):
         """Its runs end, too, with a checkpoint, and the same command continues."""
         for with_signal, expected in ((signal.SIGTERM, 130), (signal.SIGUSR1, 130), (signal.SIGKILL, -signal.SIGKILL)):
-            leader = self.start(self.campaign("out", "--jobs", 2))
+            folder = with_signal.name
+            leader = self.start(self.campaign(folder, "--jobs", 2))
             wait_until(lambda: all_children(leader), "a run", leader)
             runs = all_children(leader)
             leader.send_signal(with_signal)
             self.assertEqual(self.ended(leader)[0], expected)
             wait_until(lambda: not any(os.path.exists(f"/proc/{run}") for run in runs), "the end of its runs")
-        self.assert_done(self.run_command(self.campaign("out")))
-        self.assert_alone("out")
+            self.assert_done(self.run_command(self.campaign(folder)))
+            self.assert_alone(folder)
 
     def test_killed_run(self):
         """It fails, the others do not, and the same command does it again."""
