@@ -56,6 +56,7 @@ class ColumnFrames:
         self.column = Column(folder)
         self.rows, self.ru = snapshot_rows(self.column), pore_pressure_ratio(self.column)
         self.length = min((len(taken) for _, taken in self.rows), default=0)
+        self.mean_forces = [forces(taken[0][1]).mean() for _, taken in self.rows]
 
     def begin(self, figure):
         *self.packings, axes = figure.subplots(1, len(self.rows) + 1)
@@ -67,9 +68,9 @@ class ColumnFrames:
         self.axes = axes
 
     def draw(self, k):
-        for axes, (depth, taken) in zip(self.packings, self.rows):
+        for axes, (depth, taken), mean_force in zip(self.packings, self.rows, self.mean_forces):
             axes.clear()
-            draw_packing(axes, taken[k][1], forces(taken[0][1]).mean())
+            draw_packing(axes, taken[k][1], mean_force)
             axes.set_title(f"{depth:g} m", fontsize=9)
         time = self.rows[0][1][k][0]
         self.axes.set_title(f"{time:.2f} s", fontsize=9)

@@ -57,6 +57,18 @@ def draw_onset(axes, depth, time, reached, **style):
     axes.plot(*zip(*at) if at else ([], []), linestyle="none", **style)
 
 
+def shade_index(column, figure, axes, aspect):
+    """Colours of I_R over time and depth, and their bar; the borders of the cells in both. aspect: of the bar"""
+    grains = column.grains.profiles
+    time, depth, index = grains["time"], grains["depth"], grains["IR"].T
+    x, y = edges(time, time[0], time[-1]), edges(depth, 0, column.bottom(depth))
+    shade = axes.pcolormesh(x, y, index, cmap="RdBu", rasterized=True,
+                            norm=TwoSlopeNorm(ISOSTATIC, 0, max(2.0, float(np.nanmax(index)))))
+    figure.colorbar(shade, ax=axes, aspect=aspect, pad=0.02).set_label(label_of(grains))
+    axes.grid(False)
+    return x, y
+
+
 @draws("fig_grains_map")
 def grains_map(column):
     """I_R over depth and time; next to it when each depth falls below I_R = 1 and exceeds r_u = 0.95."""
@@ -64,21 +76,17 @@ def grains_map(column):
     if "IR" not in grains or len(grains["time"]) < 2:
         return None
     depth, time, ir = grains["depth"], grains["time"], grains["IR"].T
-    bottom = column.bottom(depth)
     figure, ((top, corner), (axes, side)) = plt.subplots(
         2, 2, figsize=(8.6, 4.9), sharex="col", height_ratios=(1, 2.6), width_ratios=(3.2, 1), layout="constrained")
     draw_input(column, top)
-    x, y = edges(time, time[0], time[-1]), edges(depth, 0, bottom)
-    shade = axes.pcolormesh(x, y, ir, cmap="RdBu", rasterized=True,
-                            norm=TwoSlopeNorm(ISOSTATIC, 0, max(2.0, float(np.nanmax(ir)))))
-    figure.colorbar(shade, ax=axes, aspect=25, pad=0.02).set_label(label_of(grains))
+    x, y = shade_index(column, figure, axes, 25)
     outline(axes, x, y, ir < ISOSTATIC, colors=BLACK, linewidths=1.0)
     draw_onset(side, depth, time, ir < ISOSTATIC, marker="o", markersize=4, color=BLACK)
     wet = wet_cells(column)
     if wet:
         ru, places, times = wet
-        outline(axes, edges(times, times[0], times[-1]), edges(places, 0, bottom), ru > LIQUEFIED_RU, colors=ORANGE,
-                linewidths=0.8)
+        outline(axes, edges(times, times[0], times[-1]), edges(places, 0, column.bottom(depth)), ru > LIQUEFIED_RU,
+                colors=ORANGE, linewidths=0.8)
         draw_onset(side, places, times, ru > LIQUEFIED_RU, marker="o", markersize=7.5, color=ORANGE,
                    markerfacecolor="none", markeredgewidth=1.3)
     finish_map(column, (top, corner, axes, side), depth, time, wet)
@@ -99,7 +107,6 @@ def finish_map(column, panels, depth, time, wet):
     side.tick_params(labelleft=False)
     side.set_xlim(time[0], time[0] + 1.12 * max(side.dataLim.x1 - time[0], 0.05 * (time[-1] - time[0])))
     side.set_title("first time", loc="right", fontsize=9, pad=5)
-    axes.grid(False)
     axes.set(xlim=(time[0], time[-1]), ylabel="Depth (m)")
     letters([top, axes, side])
 

@@ -5,11 +5,10 @@ import re
 import h5py
 import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.colors import TwoSlopeNorm
 
-from .column_grains import ISOSTATIC, label_of
+from .column_grains import shade_index
 from .column_results import quantity
-from .column_soil import depth_axis, edges
+from .column_soil import depth_axis
 from .common import BLACK, BLUE, GREY, letters, plt
 from .drawing import draws
 
@@ -59,16 +58,10 @@ def draw_motions(column, axes):
 
 def draw_map(column, figure, axes, depths, times):
     """I_R, with the places and moments of the packings next to it."""
-    grains = column.grains.profiles
-    x = edges(grains["time"], grains["time"][0], grains["time"][-1])
-    y = edges(grains["depth"], 0, column.bottom(grains["depth"]))
-    shade = axes.pcolormesh(x, y, grains["IR"].T, cmap="RdBu", rasterized=True,
-                            norm=TwoSlopeNorm(ISOSTATIC, 0, max(2.0, float(np.nanmax(grains["IR"])))))
-    figure.colorbar(shade, ax=axes, aspect=30, pad=0.02).set_label(label_of(grains))
+    shade_index(column, figure, axes, 30)
     axes.plot(*np.meshgrid(times, depths), "o", color=BLACK, markerfacecolor="white", markersize=5, clip_on=False,
               linestyle="none", zorder=5)
-    axes.grid(False)
-    depth_axis(column, axes, grains["depth"])
+    depth_axis(column, axes, column.grains.profiles["depth"])
     axes.set(xlim=(column.time[0], column.time[-1]), xlabel="Time (s)", ylabel="Depth (m)")
 
 
