@@ -11,6 +11,7 @@
 #include "apps/deposit/instant.hpp"
 #include "apps/deposit/output.hpp"
 #include "apps/soil_column/analysis_run.hpp"
+#include "base/fields.hpp"
 #include "base/files/replace_file.hpp"
 #include "base/record/series_file.hpp"
 #include "fem/space/vtu.hpp"
@@ -73,16 +74,8 @@ struct BlockResult
   double large_from = 0;        ///< axial strain at which one of the two was first beyond a tenth; 0: they were not
   std::size_t iterations = 0, trials = 0, substeps = 0, rejected = 0;
 
-  template <class Result, class Visit>
-  static void for_each(Result &r, const Visit &visit)
-  {
-    visit("axial_strain", r.axial_strain), visit("peak_stress", r.peak_stress), visit("peak_strain", r.peak_strain);
-    visit("last_stress", r.last_stress), visit("volumetric_strain", r.volumetric_strain);
-    visit("pore_pressure", r.pore_pressure), visit("localisation", r.localisation);
-    visit("max_strain", r.max_strain), visit("max_rotation", r.max_rotation), visit("large_from", r.large_from);
-    visit("iterations", r.iterations), visit("trials", r.trials), visit("substeps", r.substeps);
-    visit("rejected", r.rejected);
-  }
+  ISOSTAT_FIELDS(axial_strain, peak_stress, peak_strain, last_stress, volumetric_strain, pore_pressure, localisation,
+                 max_strain, max_rotation, large_from, iterations, trials, substeps, rejected)
 };
 
 std::string beyond_small(const BlockResult &result)

@@ -16,8 +16,7 @@ constexpr std::uint64_t modulus_interval = 20;
 /// (2 + 3r)/(6 + 4r) with r = ks/kn, 1/3 to 1/2; here r = 0.3 (docs/theory.md, section 15).
 constexpr double shear_over_normal = 0.4;
 
-/// Of grains that find their places, and lateral over axial stiffness: where static_servo() begins.
-constexpr double relaxed_over_affine = 0.6, lateral_over_normal = 0.25;
+constexpr double lateral_over_normal = 0.25; ///< stiffness with which static_servo() begins
 
 constexpr double kept_tolerance = 3e-3; ///< of p', on stresses that an increment should keep
 
@@ -37,7 +36,7 @@ Eigen::Matrix4d corrected_moduli(const Assembly &assembly, const StaticComponent
       k.diagonal() << moduli, shear_over_normal * moduli.mean();
     }
   else if (strain.squaredNorm() > 0)
-    k += (now - before - k * strain) * strain.transpose() / strain.squaredNorm();
+    correct_stiffness(k, strain, StaticComponents(now - before));
   last.moduli_x = k.row(0).head<3>(), last.moduli_y = k.row(1).head<3>(), last.moduli_z = k.row(2).head<3>();
   last.by_gamma = k.col(3).head<3>(), last.of_tau = k.row(3).head<3>(), last.shear_modulus = k(3, 3);
   return k;

@@ -32,10 +32,23 @@ Mat3 stress_servo(const Assembly &assembly, const Mat3 &target, const Eigen::Mat
 /// towards positive gamma.
 using StaticComponents = Eigen::Vector4d;
 
+/// Of grains that find their places: where the stiffness that keeps stresses from balance to balance begins.
+constexpr double relaxed_over_affine = 0.6;
+
+/// A stiffness so that it answers the last strain (Broyden 1965, Math. Comp. 19, 577,
+/// doi:10.1090/S0025-5718-1965-0198670-6).   @param answer  change of the stresses, Pa   @pre |strain| > 0
+/// tested: tests/verification/static_drive_test.cpp, tests/dem/rve/rve_test.cpp
+template <int n>
+void correct_stiffness(Eigen::Matrix<double, n, n> &k, const Eigen::Matrix<double, n, 1> &strain,
+                       const Eigen::Matrix<double, n, 1> &answer)
+{
+  k += (answer - k * strain) * strain.transpose() / strain.squaredNorm();
+}
+
 /// The next increment of a static drive: strains of the controlled components that bring their stresses to the targets,
 ///     K_cc d eps_c = target_c - sigma_c - K_cp d eps_p,
-/// next to those that are prescribed (p). K begins as three fifths of the affine stiffness and is corrected after each
-/// increment so that it answers that one (Broyden 1965, Math. Comp. 19, 577, doi:10.1090/S0025-5718-1965-0198670-6).
+/// next to those that are prescribed (p). K begins as relaxed_over_affine times the affine stiffness and is corrected
+/// after each increment (correct_stiffness()).
 /// @param now  stresses as they are, Pa   @param prescribed  [-]   @param cap  on each strain, an amount [-]
 /// @param per_axial  targets change by so much with sigma_y: -1/2 where lateral stresses keep p' [-]
 /// tested: tests/verification/static_drive_test.cpp

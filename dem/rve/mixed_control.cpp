@@ -16,9 +16,8 @@ namespace isostat
 namespace
 {
 constexpr std::uint64_t servo_interval = 20;
-constexpr int settled = 3;                  ///< checks in a row with stresses on target
-constexpr double least_share = 0.01;        ///< of an increment: strains below it say nothing about the stiffness
-constexpr double relaxed_over_affine = 0.6; ///< stiffness of grains that find their places: where the iteration begins
+constexpr int settled = 3;           ///< checks in a row with stresses on target
+constexpr double least_share = 0.01; ///< of an increment: strains below it say nothing about the stiffness
 
 using Components = Eigen::Matrix<double, 6, 1>; ///< xx, yy, zz, yz, xz, xy; of strains the last three are gamma
 
@@ -34,6 +33,13 @@ Mat3 gradient_of(const Components &strain)
 {
   const Components e = strain.array() * Components(1, 1, 1, 0.5, 0.5, 0.5).array();
   return Mat3{{e[0], e[5], e[4]}, {e[5], e[1], e[3]}, {e[4], e[3], e[2]}};
+}
+
+/// Without the strain of what follows a stress.
+Mat3 prescribed_part(const MixedIncrement &own)
+{
+  const Mat3 symmetric = 0.5 * (own.gradient + own.gradient.transpose());
+  return own.gradient - Mat3(symmetric.array() * own.controlled.cast<double>().array());
 }
 
 [[noreturn]] void cannot_carry(double error, double travelled, std::uint64_t steps)
@@ -97,8 +103,7 @@ double strain_measure(const Mat3 &gradient)
 void Rve::run_mixed(const MixedIncrement &own)
 {
   const auto free = own.controlled.cast<double>().array();
-  const Mat3 symmetric = 0.5 * (own.gradient + own.gradient.transpose());
-  const Mat3 prescribed = own.gradient - Mat3(symmetric.array() * free);
+  const Mat3 prescribed = prescribed_part(own);
   const double size = strain_measure(prescribed);
   double left = prescribed.isZero(0) ? 0 : 1;
   drive_.servo.step.setZero();
@@ -136,7 +141,7 @@ void Rve::run_mixed(const MixedIncrement &own)
 void Rve::run_mixed_balanced(const MixedIncrement &own, const StaticStepping &stepping)
 {
   const Components controlled = stresses(own.controlled.cast<double>());
-  const Mat3 prescribed = own.gradient - gradient_of(strains(own.gradient).cwiseProduct(controlled));
+  const Mat3 prescribed = prescribed_part(own);
   run_balanced(Mat3::Zero(), stepping);
   const Components start = stresses(assembly_.stress()), way = stresses(own.stress) - start;
   const double parts = std::ceil(std::max(strain_measure(prescribed) / stepping.increment, 1e-9));
@@ -169,7 +174,7 @@ void Rve::run_mixed_balanced(const MixedIncrement &own, const StaticStepping &st
       travelled += followed.cwiseAbs().maxCoeff();
       const Components answer = stresses(assembly_.stress()) - now;
       if (strain.norm() > least_share * stepping.increment)
-        stiffness += (answer - stiffness * strain) * strain.transpose() / strain.squaredNorm();
+        correct_stiffness(stiffness, strain, answer);
       now += answer;
     }
 }
