@@ -117,7 +117,6 @@ void VerletList::search(const Packing &packing, const Domain &domain, int thread
   wide_skin_ = std::min(wide_over_tight * skin_, 0.99 * room);
   skin_ = std::min(skin_, 0.5 * wide_skin_);
   wide_ = reference(packing, domain);
-  ++n_searches_;
   if (domain.cell)
     {
       std::tie(candidates_, candidate_images_) = find_pairs(packing, domain.cell->edges, wide_skin_);

@@ -41,7 +41,6 @@ public:
   /// Positions have been replaced: the next update looks whether the list still fits them.
   void recheck() { slack_ = -1; }
   std::uint64_t n_rebuilds() const { return n_rebuilds_; } ///< of the tight list
-  std::uint64_t n_searches() const { return n_searches_; } ///< of the wide one
   double skin() const { return skin_; }                    ///< tight, m
   std::size_t bytes() const
   {
@@ -68,7 +67,7 @@ private:
   void select_near_walls(const Packing &packing, const RigidBox &box, const Partition &partition);
 
   double skin_ = 0, wide_skin_ = 0, slack_ = -1;
-  std::uint64_t steps_since_rebuild_ = 0, n_rebuilds_ = 0, n_searches_ = 0;
+  std::uint64_t steps_since_rebuild_ = 0, n_rebuilds_ = 0;
   Reference tight_, wide_;
   double max_reach_ = 0; ///< largest R1 + R2, m
   std::vector<ContactList::Pair> candidates_;
