@@ -255,8 +255,9 @@ constexpr Key output_keys[] = {
    .text = "Folder of the run; left out: results/ and the name of the scene file."},
   {.path = "history_interval", .field = member<&ColumnOutput::history_interval>, .unit = unit::s, .value = "0.01 s",
    .range = {0, 10, true}, .reason = "because rows further apart show no shaking",
-   .text = "Time between rows of the histories. A time step that is not given divides it; it is rounded to whole steps "
-           "of one that is given, and if it is shorter every step has a row. A consolidation writes every step."},
+   .text = "Time between rows of the histories. A time step that is not given divides it. It is rounded to whole steps of "
+           "one that is given or of a soil with grains; if it is shorter, every step has a row. A consolidation writes "
+           "every step."},
   {.path = "depths", .field = member<&ColumnOutput::depths>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths below the surface at which stress paths and motions are recorded. Within the soil."},
