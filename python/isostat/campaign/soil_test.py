@@ -112,7 +112,7 @@ def summary_text(title, test):
     lines = ["", title, f"  layer                    {test.layer}, {test.material}, sigma'_v0 = {test.vertical_stress / 1e3:.4g} "
              f"kPa, G_max = {test.shear_modulus / 1e6:.4g} MPa", "",
              f"  {'gamma (%)':>10}  {'G/G_max':>8}  {'damping (%)':>11}"]
-    lines += [f"  {100 * gamma:>10.3g}  {ratio:>8.3f}  {100 * damping:>11.2f}" for gamma, ratio, damping in test.modulus[::2]]
+    lines += [f"  {100 * gamma:>10.3g}  {ratio:>8.3f}  {100 * abs(damping):>11.2f}" for gamma, ratio, damping in test.modulus[::2]]
     if test.crr is None:
         lines += ["", "  resistance               does not liquefy: shear builds up no pore pressure that would"]
     if len(test.resistance):
