@@ -279,7 +279,7 @@ constexpr Key output_keys[] = {
    .text = "Damping of the oscillators of response spectra."},
 };
 
-constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
+constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}, {"resistance"}};
 
 using enum Dimension;
 constexpr Dimension dimensions[] = {length, pressure, angle, rate, density, velocity, acceleration, frequency, duration, interval};
@@ -317,6 +317,7 @@ const SceneSchema &column_schema()
                              KeyRun(layer_keys, "layer"),
                              splice("layer", saturation_keys(), 0, [](ColumnLayer &layer) -> Layer & { return layer; }),
                              splice<&ColumnLayer::iwan>("layer", iwan_keys(), iwan),
+                             splice<&ColumnLayer::sand_density>("layer", sand_density_keys(), iwan),
                              splice<&ColumnLayer::mohr_coulomb>("layer", mohr_coulomb_keys(), mohr_coulomb),
                              splice<&ColumnLayer::grains>("layer", specimen_keys(), grains),
                              KeyRun(own_sand_key, "layer"),

@@ -12,7 +12,7 @@ from .folder import IN_PYTHON, NoResults, Results
 from .quantities import converted, named, shown
 
 REPORT = "report.html"
-KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command continues with what is missing
+KEPT = ("resistance", "soil_test", "calibrate", "column_ensemble")  # the same command continues with what is missing
 RESUMED = ("element_test", "soil_column", "biaxial")  # --resume continues from a checkpoint
 
 

@@ -2,6 +2,7 @@
 #include "apps/soil_column/summary.hpp"
 
 #include "apps/common/summary.hpp"
+#include "apps/deposit/resistance.hpp"
 #include "dem/measure/redundancy.hpp"
 
 #include <algorithm>
@@ -50,14 +51,17 @@ Json layers_json(const ColumnScene &scene)
 {
   Json layers = Json::array();
   double top = 0;
-  for (const ColumnLayer &layer : scene.layers)
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
     {
+      const ColumnLayer &layer = scene.layers[k];
       layers.push_back({{"name", layer.name},
                         {"top", top},
                         {"bottom", top + layer.thickness},
                         {"material", material_names[static_cast<int>(layer.material)]},
                         {"density", layer.density},
                         {"shear_modulus", layer.from_formula() ? Json(layer.small_strain_modulus()) : Json()}});
+      if (const std::optional<double> resistance = layer_resistance(scene, k))
+        layers.back()["crr"] = *resistance;
       top += layer.thickness;
     }
   return layers;

@@ -3,6 +3,7 @@
 
     isostat calibrate PLAN                            parameters of a scene from laboratory curves
     isostat resistance SCENE --ratios 0.1,0.15,0.2    tests at several amplitudes: a resistance curve
+    isostat soil-test SCENE                           element tests of a column's material: G/G_max, damping, CRR
     isostat ensemble SCENE -n 8                       a soil column with eight sets of packings: bands
     isostat compare results/one results/other         two runs side by side in compare.html
     isostat element_test SCENE                        the program of this name, with everything that follows
@@ -19,6 +20,7 @@ from isostat.figures.command_line import meant
 
 CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by small element tests",
              "resistance": "cyclic stress ratio against cycles to liquefaction, from many tests",
+             "soil-test": "element tests of the material of a column's layer: G/G_max, damping, CRR",
              "ensemble": "a soil column with many sets of packings or many records: bands of all",
              "library": "periodic specimens at several pressures and densities, in one file",
              "study": "NAME: the runs, tables and figures behind a page of results"}
@@ -70,7 +72,7 @@ def main(words=None):
     warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
     name, *rest = (sys.argv[1:] if words is None else words) or ["--help"]
     if name in CAMPAIGNS:
-        return importlib.import_module(f"isostat.campaign.{name}").main(rest)
+        return importlib.import_module(f"isostat.campaign.{name.replace('-', '_')}").main(rest)
     if name in PACKINGS:
         return importlib.import_module("isostat.convert_packing").main(rest)
     if name in VIEWS:

@@ -134,6 +134,24 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
         return results
 
 
+class SoilPoint(_column.SoilPoint):
+    """One Gauss point of the material of a layer (elastic, iwan or mohr_coulomb), in an element test.
+
+    SoilPoint(scene, layer=None, vertical_stress=None)
+
+    scene            ColumnScene      layer  its name; None: the first of such a material
+    vertical_stress  effective, compression positive, Pa, with the k0 of the layer; None: that in the middle of the layer
+
+    Simple shear is along xz without lateral strain. Raises InputError, and RunFailure where no strain gives a stress.
+    isostat.campaign.soil_test.soil_test() makes a whole set of tests.
+
+    point = column.SoilPoint(scene, "sand")
+    cycles, path = point.cyclic_shear(0.2 * 100e3, 50)
+    point.shear_to(0)
+    settled = point.compress_to(100e3)[-1, 4]
+    """
+
+
 class ColumnResults(Results):
     """A results folder of soil_column or run(): as Results, with draw() for its figures, and what is taken out of a site
     response: each method is the function of this name in isostat.figures.site_response, which says what it returns.
