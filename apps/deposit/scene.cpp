@@ -19,6 +19,7 @@ ColumnScene checked_scene(const SceneDocument &document)
 {
   ColumnScene scene;
   fill_scene(document, scene);
+  find_in_situ_pressures(scene);
   check_column(document, scene);
   return scene;
 }
@@ -67,10 +68,19 @@ double ColumnLayer::small_strain_modulus() const
   return shear_modulus ? *shear_modulus : density * *shear_velocity * *shear_velocity;
 }
 
+double ColumnLayer::in_situ_modulus() const
+{
+  const double exponent = material == LayerMaterial::iwan           ? iwan.exponent
+                          : material == LayerMaterial::mohr_coulomb ? mohr_coulomb.exponent
+                                                                    : 0;
+  return small_strain_modulus() * std::pow(in_situ_pressure / reference_pressure.value_or(in_situ_pressure), exponent);
+}
+
 IwanParameters ColumnLayer::sand() const
 {
   IwanParameters sand = iwan;
   sand.shear_modulus = small_strain_modulus();
+  sand.reference_pressure = reference_pressure.value_or(in_situ_pressure);
   sand.poisson_ratio = poisson_ratio;
   return sand;
 }
@@ -79,6 +89,7 @@ MohrCoulombParameters ColumnLayer::frictional_soil() const
 {
   MohrCoulombParameters soil = mohr_coulomb;
   soil.shear_modulus = small_strain_modulus();
+  soil.reference_pressure = reference_pressure.value_or(in_situ_pressure);
   soil.poisson_ratio = poisson_ratio;
   return soil;
 }
@@ -149,6 +160,20 @@ SoilProfile soil_profile(const ColumnScene &scene)
   if (scene.water.drainage == Drainage::dry)
     profile.water.density = 0;
   return profile;
+}
+
+void find_in_situ_pressures(ColumnScene &scene)
+{
+  const SoilProfile soil = soil_profile(scene);
+  const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0;
+  double bottom = soil.height();
+  for (ColumnLayer &layer : scene.layers)
+    {
+      bottom -= layer.thickness;
+      const double vertical = soil.vertical_effective_stress(bottom + layer.thickness / 2, surcharge);
+      layer.in_situ_pressure =
+          scene.analysis.kind == AnalysisKind::biaxial ? scene.biaxial.confinement : (1 + 2 * layer.k0) / 3 * vertical;
+    }
 }
 
 GroundLine ground_line(const ColumnMesh &mesh)

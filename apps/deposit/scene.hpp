@@ -67,7 +67,9 @@ struct ColumnLayer : Layer
 {
   LayerMaterial material = LayerMaterial::elastic;
   std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, of a formula
-  double poisson_ratio = 0.3;                          ///< of the drained skeleton
+  std::optional<double> reference_pressure;            ///< of that stiffness, Pa; left out: in_situ_pressure
+  double in_situ_pressure = 100e3;    ///< p' in the middle of the layer; follows from the scene when it is read. Pa
+  double poisson_ratio = 0.3;         ///< of the drained skeleton
   IwanParameters iwan;                ///< ignored by other materials; its stiffness is the layer's, see sand()
   MohrCoulombParameters mohr_coulomb; ///< likewise, see frictional_soil()
   SpecimenRequest grains;             ///< ignored by other materials
@@ -75,6 +77,7 @@ struct ColumnLayer : Layer
 
   bool from_formula() const { return shear_modulus || shear_velocity; }
   double small_strain_modulus() const;           ///< G, Pa, whichever of the two was given (rho V_s^2)
+  double in_situ_modulus() const;                ///< G at in_situ_pressure, Pa
   IwanParameters sand() const;                   ///< `iwan` with the stiffness of the layer
   MohrCoulombParameters frictional_soil() const; ///< `mohr_coulomb` with the stiffness of the layer
 
@@ -230,6 +233,10 @@ struct ColumnScene
 /// Layers and water as the solvers take them, layers in the order of the scene. Without water (dry) its density is 0,
 /// so that all weight is effective.
 SoilProfile soil_profile(const ColumnScene &scene);
+
+/// Sets ColumnLayer::in_situ_pressure of all layers; a surcharge on a part of the surface does not count. Reading a
+/// scene does so, too.
+void find_in_situ_pressures(ColumnScene &scene);
 
 /// The surface of a box that is not level.
 GroundLine ground_line(const ColumnMesh &mesh);

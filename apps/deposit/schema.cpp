@@ -149,12 +149,17 @@ constexpr Key layer_keys[] = {
   {.path = "shear_velocity", .field = member<&ColumnLayer::shear_velocity>, .unit = unit::m_s,
    .presence = Presence::experiment, .value = "200 m/s", .range = {0.1, 1e5},
    .reason = "because waves in mud are as slow, and in rock not as fast", .kinds = formula, .group = "stiffness",
-   .text = "Shear-wave velocity V_s at small strain: G = density V_s^2; for iwan and mohr_coulomb at the reference "
-           "pressure."},
+   .text = "Shear-wave velocity V_s at small strain: G = density V_s^2; for iwan and mohr_coulomb at "
+           "`reference_pressure`."},
   {.path = "shear_modulus", .field = member<&ColumnLayer::shear_modulus>, .unit = unit::MPa,
    .presence = Presence::optional, .value = "80 MPa", .range = stresses, .reason = because_stresses, .kinds = formula,
    .group = "stiffness",
-   .text = "Shear modulus G at small strain; for iwan and mohr_coulomb at the reference pressure."},
+   .text = "Shear modulus G at small strain; for iwan and mohr_coulomb at `reference_pressure`."},
+  {.path = "reference_pressure", .field = member<&ColumnLayer::reference_pressure>, .unit = unit::kPa,
+   .presence = Presence::optional, .value = "100 kPa", .range = stresses, .reason = because_stresses,
+   .kinds = iwan | mohr_coulomb,
+   .text = "Mean effective stress p_r at which the stiffness is given; left out: that in situ in the middle of the "
+           "layer, so that V_s is the one measured there."},
   {.path = "poisson_ratio", .field = member<&ColumnLayer::poisson_ratio>, .value = "0.3",
    .range = {0, 0.5, false, true},
    .reason = "because the skeleton does not widen when it is stretched, and is compressible without its water",
