@@ -61,7 +61,8 @@ SceneFragment<IwanParameters> all_iwan_keys()
 
 void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand)
 {
-  if (sand.phase_transformation_ratio > sand.strength_ratio)
+  const bool feels_shear = sand.contraction > 0 || sand.dilation > 0;
+  if (feels_shear && sand.phase_transformation_ratio > sand.strength_ratio)
     document.refuse(prefix + ".phase_transformation_ratio",
                     "must not exceed strength_ratio, which no stress goes beyond. Correct one of them.");
 }
