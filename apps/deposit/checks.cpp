@@ -86,8 +86,10 @@ void check_air(const SceneDocument &document, const ColumnScene &scene)
                     "situ. Remove it.");
 }
 
-void check_layer(const SceneDocument &document, const ColumnScene &scene, std::size_t i)
+void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t i)
 {
+  if (scene.layers[i].material == LayerMaterial::iwan)
+    check_curve(document, scene, i);
   const ColumnLayer &layer = scene.layers[i];
   if (scene.mesh.distributed && layer.material == LayerMaterial::user)
     document.refuse(fmt::format("layer.{}.material", i),
@@ -101,7 +103,7 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
     document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water should move.");
   if (layer.material == LayerMaterial::iwan)
-    check_iwan(document, prefix, layer.iwan);
+    check_iwan(document, prefix, layer.sand());
   if (layer.material == LayerMaterial::mohr_coulomb)
     check_mohr_coulomb(document, prefix, layer.mohr_coulomb);
   constexpr unsigned most = 1000000;

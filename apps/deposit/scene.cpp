@@ -19,7 +19,7 @@ ColumnScene checked_scene(const SceneDocument &document)
 {
   ColumnScene scene;
   fill_scene(document, scene);
-  find_in_situ_pressures(scene);
+  find_in_situ_states(scene);
   check_column(document, scene);
   return scene;
 }
@@ -82,6 +82,8 @@ IwanParameters ColumnLayer::sand() const
   sand.shear_modulus = small_strain_modulus();
   sand.reference_pressure = reference_pressure.value_or(in_situ_pressure);
   sand.poisson_ratio = poisson_ratio;
+  if (shear_strength)
+    sand.strength_ratio = *shear_strength / in_situ_pressure;
   return sand;
 }
 
@@ -162,7 +164,7 @@ SoilProfile soil_profile(const ColumnScene &scene)
   return profile;
 }
 
-void find_in_situ_pressures(ColumnScene &scene)
+void find_in_situ_states(ColumnScene &scene)
 {
   const SoilProfile soil = soil_profile(scene);
   const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0;
@@ -170,6 +172,7 @@ void find_in_situ_pressures(ColumnScene &scene)
   for (ColumnLayer &layer : scene.layers)
     {
       bottom -= layer.thickness;
+      layer.in_situ_depth = soil.height() - bottom - layer.thickness / 2;
       const double vertical = soil.vertical_effective_stress(bottom + layer.thickness / 2, surcharge);
       layer.in_situ_pressure =
           scene.analysis.kind == AnalysisKind::biaxial ? scene.biaxial.confinement : (1 + 2 * layer.k0) / 3 * vertical;
@@ -233,6 +236,7 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
   ColumnScene scene = checked_scene(document);
   find_motion_files(document, path, scene);
   find_libraries(document, path, scene);
+  find_curves(document, path, scene);
   if (scene.output.folder.empty())
     scene.output.folder = results_folder(path);
   return scene;

@@ -125,14 +125,14 @@ TEST(ColumnScene, DefaultsAreThoseOfTheStructs)
   one.cells = 10;
   one.shear_velocity = 200;
   expected.layers = {one};
-  find_in_situ_pressures(expected);
+  find_in_situ_states(expected);
   EXPECT_EQ(expected.layers[0].in_situ_pressure, 2.0 / 3 * 2000 * 9.81 * 2.5);
   EXPECT_EQ(parse_column_scene(smallest, "s"), expected);
 
   one.material = LayerMaterial::iwan;
   one.cells = 5;
   expected.layers = {one};
-  find_in_situ_pressures(expected);
+  find_in_situ_states(expected);
   EXPECT_EQ(parse_column_scene(sand + dry + dynamic, "s"), expected);
   EXPECT_EQ(ColumnScene().water.drainage, parse_column_scene(consolidation, "s").water.drainage);
   EXPECT_EQ(ColumnScene().analysis.steps, parse_column_scene(consolidation, "s").analysis.steps);
@@ -285,7 +285,7 @@ TEST(ColumnScene, RoundTripToTheBit)
         scene.analysis.last_time = 7 * scene.analysis.first_time;
         for (double &depth : scene.output.depths)
           depth = scene.height() / 3;
-        find_in_situ_pressures(scene);
+        find_in_situ_states(scene);
         EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene) << to_toml(scene);
       }
 }
