@@ -87,8 +87,10 @@ void check_air(const SceneDocument &document, const ColumnScene &scene)
                     "situ. Remove it.");
 }
 
-void check_layer(const SceneDocument &document, const ColumnScene &scene, std::size_t i)
+void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t i)
 {
+  if (scene.layers[i].material == LayerMaterial::iwan)
+    check_curve(document, scene, i);
   const ColumnLayer &layer = scene.layers[i];
   if (scene.mesh.distributed && layer.material == LayerMaterial::user)
     document.refuse(fmt::format("layer.{}.material", i),
@@ -103,7 +105,7 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water should move.");
   if (layer.material == LayerMaterial::iwan)
     {
-      check_iwan(document, prefix, layer.iwan, layer.sand_density);
+      check_iwan(document, prefix, layer.sand(), layer.sand_density);
       check_resistance(document, scene, i);
     }
   if (layer.material == LayerMaterial::mohr_coulomb)

@@ -4,7 +4,6 @@
 #include "apps/deposit/resistance.hpp"
 #include "base/error.hpp"
 #include "dem/prepare/random.hpp"
-#include "fem/material/elastic.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -193,11 +192,9 @@ std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n
 
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points)
 {
-  if (layer.material == LayerMaterial::iwan)
-    return std::make_unique<Iwan>(layer.sand(), n_points);
   if (layer.material == LayerMaterial::mohr_coulomb)
     return std::make_unique<MohrCoulomb>(layer.frictional_soil(), n_points);
-  return std::make_unique<Elastic>(ElasticParameters{layer.small_strain_modulus(), layer.poisson_ratio}, n_points);
+  return damped_material(layer, n_points);
 }
 
 Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0, double z)

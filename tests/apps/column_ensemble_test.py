@@ -23,6 +23,7 @@ thickness = "4 m"
 cells = 2
 density = "1900 kg/m3"
 material = "iwan"
+reference_pressure = "100 kPa"
 shear_velocity = "120 m/s"
 [[motion]]
 axis = "x"
