@@ -12,8 +12,15 @@ SceneFragment<IwanParameters> iwan_keys();
 /// Those and all other parameters: what bytes and checks are made of.
 SceneFragment<IwanParameters> all_iwan_keys();
 
+/// Smallest and largest K0 = sigma'_h/sigma'_v that a strength ratio M bears: sqrt(3) |1 - K0|/(1 + 2 K0) <= M; the
+/// largest may be infinite.   tested: tests/apps/deposit/scene_error_test.cpp
+double smallest_k0(double strength_ratio);
+double largest_k0(double strength_ratio);
+
 /// @param prefix  where the keys of the sand are, "layer.0"
 /// @throws InputError  phase transformation above the strength
 /// tested: tests/apps/deposit/scene_error_test.cpp
 void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand);
+/// @param k0  of the layer   @throws InputError  it needs more than the strength
+void check_k0(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand, double k0);
 } // namespace isostat

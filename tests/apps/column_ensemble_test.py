@@ -23,6 +23,7 @@ thickness = "4 m"
 cells = 2
 density = "1900 kg/m3"
 material = "iwan"
+k0 = 0.5
 shear_velocity = "120 m/s"
 [[motion]]
 axis = "x"
