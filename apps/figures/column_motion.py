@@ -69,7 +69,7 @@ def column_spectrum(column, where, axis):
 @draws("fig_spectra")
 def spectra(column):
     """Response spectra of input and surface of every step (spectra.csv), and their ratio; grey: periods that belong to
-    frequencies above analysis.highest_frequency."""
+    frequencies above analysis.highest_frequency, or from which on S_a depends on the mesh (--check-mesh)."""
     axes_moving = [axis for axis in column.moving if column.has(f"surface_a{axis}")]
     if column.consolidation or not axes_moving:
         return None
@@ -87,12 +87,12 @@ def spectra(column):
         bottom.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
         top.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
     letters(panels)
-    finish_spectra(panels, column.spectrum_damping, column.damping["viscous_above"])
+    finish_spectra(panels, column.spectrum_damping, min(column.damping["viscous_above"], column.mesh_frequency))
     return figure
 
 
 def finish_spectra(panels, damping, highest_frequency):
-    """Grey: periods of what is above the highest frequency of interest."""
+    """Grey: periods of what is above the highest frequency of interest, or depends on the mesh."""
     for axes in panels.flat:
         axes.axvspan(PERIODS[0], max(PERIODS[0], 1 / highest_frequency), color="#eeeeee", zorder=0)
         axes.set(xscale="log", xlim=(PERIODS[0], PERIODS[-1]), ylim=(0, None))
