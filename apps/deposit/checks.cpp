@@ -2,6 +2,7 @@
 // Rules that bind several keys of a column's scene.
 #include "apps/deposit/box.hpp"
 #include "apps/deposit/default_mesh.hpp"
+#include "apps/deposit/resistance.hpp"
 #include "apps/deposit/slope.hpp"
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
@@ -143,7 +144,10 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
   if (block && scene.water.drainage == Drainage::dry && layer.permeability > 0)
     document.refuse(prefix + ".permeability", "has no effect in a block if water.drainage is \"dry\". Remove it.");
   if (layer.material == LayerMaterial::iwan)
-    check_iwan(document, prefix, layer.iwan);
+    {
+      check_iwan(document, prefix, layer.iwan, layer.sand_density);
+      check_resistance(document, scene, i);
+    }
   if (layer.material == LayerMaterial::iwan && !block)
     check_k0(document, prefix, layer.iwan, layer.k0);
   if (layer.material == LayerMaterial::mohr_coulomb)

@@ -6,7 +6,7 @@
 #include "base/scene/fragment.hpp"
 #include "coupling/batch/rve_material_settings.hpp"
 #include "coupling/in_situ/specimen_request.hpp"
-#include "fem/material/iwan.hpp"
+#include "fem/material/liquefaction_resistance.hpp"
 #include "fem/material/mohr_coulomb.hpp"
 #include "fem/material/soil.hpp"
 #include "fem/motion/base.hpp"
@@ -78,6 +78,7 @@ struct ColumnLayer : Layer
   std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, of a formula
   double poisson_ratio = 0.3;                          ///< of the drained skeleton
   IwanParameters iwan;                ///< ignored by other materials; its stiffness is the layer's, see sand()
+  SandDensity sand_density;           ///< likewise; resisting_layer() gives its sand
   MohrCoulombParameters mohr_coulomb; ///< likewise, see frictional_soil()
   SpecimenRequest grains;             ///< ignored by other materials
   std::string table;                  ///< only in files: when a scene has been read, its rows have become layers

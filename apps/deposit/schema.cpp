@@ -279,8 +279,9 @@ constexpr Key output_keys[] = {
    .text = "Folder of the run; left out: results/ and the name of the scene file."},
   {.path = "history_interval", .field = member<&ColumnOutput::history_interval>, .unit = unit::s, .value = "0.01 s",
    .range = {0, 10, true}, .reason = "because rows further apart show no shaking",
-   .text = "Time between rows of the histories, rounded to whole time steps; a consolidation writes every step. Left "
-           "out of a dynamic analysis whose `highest_frequency` f is above 25 Hz: 1/(4 f)."},
+   .text = "Time between rows of the histories. A time step that is not given divides it; it is rounded to whole steps "
+           "of one that is given, and if it is shorter every step has a row. A consolidation writes every step. Left out "
+           "of a dynamic analysis whose `highest_frequency` f is above 25 Hz: 1/(4 f)."},
   {.path = "depths", .field = member<&ColumnOutput::depths>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths below the surface at which stress paths and motions are recorded. Within the soil."},
@@ -290,8 +291,8 @@ constexpr Key output_keys[] = {
            "walls, else 0 m, as all x are equal where sides are tied."},
   {.path = "profile_interval", .field = member<&ColumnOutput::profile_interval>, .unit = unit::s,
    .presence = Presence::optional, .value = "0.1 s", .range = positive,
-   .text = "Time between profiles over the depth, rounded likewise; left out: maxima only. A consolidation writes "
-           "every step."},
+   .text = "Time between profiles over the depth, rounded to whole time steps; left out: maxima only. A consolidation "
+           "writes every step."},
   {.path = "paraview_interval", .field = member<&ColumnOutput::paraview_interval>, .unit = unit::s,
    .presence = Presence::optional, .value = "0.5 s", .range = positive,
    .text = "Time between files for ParaView, rounded likewise; left out: none. A consolidation writes every step."},
@@ -302,7 +303,7 @@ constexpr Key output_keys[] = {
    .text = "Damping of the oscillators of response spectra."},
 };
 
-constexpr KeyGroup groups[] = {{"cells"}, {"weight"}, {"rock weight", "density = \"2300 kg/m3\""}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
+constexpr KeyGroup groups[] = {{"cells"}, {"weight"}, {"rock weight", "density = \"2300 kg/m3\""}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}, {"resistance"}};
 
 using enum Dimension;
 constexpr Dimension dimensions[] = {length, pressure, angle, rate, density, unit_weight, velocity, acceleration, frequency, duration, interval};
@@ -340,6 +341,7 @@ const SceneSchema &column_schema()
                              KeyRun(layer_keys, "layer"),
                              splice("layer", saturation_keys(), 0, [](ColumnLayer &layer) -> Layer & { return layer; }),
                              splice<&ColumnLayer::iwan>("layer", iwan_keys(), iwan),
+                             splice<&ColumnLayer::sand_density>("layer", sand_density_keys(), iwan),
                              splice<&ColumnLayer::mohr_coulomb>("layer", mohr_coulomb_keys(), mohr_coulomb),
                              splice<&ColumnLayer::grains>("layer", specimen_keys(), grains),
                              KeyRun(own_sand_key, "layer"),

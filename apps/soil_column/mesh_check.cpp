@@ -25,7 +25,7 @@ SpectrumDifference spectrum_difference(const ColumnScene &scene, const std::file
   constexpr double shortest = 0.1, notable = 0.05;
   std::vector<std::string> columns = {"period (s)"};
   for (const ColumnMotion &motion : scene.motions)
-    columns.push_back(fmt::format("surface_{} (m/s2)", "xyz"[static_cast<std::size_t>(motion.axis)]));
+    columns.push_back(fmt::format("surface_{}_SA (m/s2)", "xyz"[static_cast<std::size_t>(motion.axis)]));
   const CsvTable one(whole / "spectra.csv", columns), other(half / "spectra.csv", columns);
   SpectrumDifference found;
   for (std::size_t row = one.n_rows(); row-- > 0;) // from the longest period

@@ -49,8 +49,10 @@ Backbone fit_hyperbola(unsigned n)
 }
 
 Iwan::Iwan(const IwanParameters &p, std::size_t n_points)
-    : RowMaterial("iwan", numbers_of(all_iwan_keys().keys, checked(p)), n_points, elements + 5 * padded(p.elements)),
-      parameters_(p), width_(padded(p.elements)), stride_(elements + 5 * width_)
+    : RowMaterial("iwan", numbers_of(all_iwan_keys().keys, checked(p)), n_points,
+                  elements + 5 * padded(p.elements) + (p.reconsolidation > 0 ? std::size_t(n_reconsolidation) : 0)),
+      parameters_(p), width_(padded(p.elements)), stride_(committed_.size() / std::max<std::size_t>(1, n_points)),
+      extra_(elements + 5 * width_)
 {
   const Backbone b = fit_hyperbola(p.elements);
   bulk_per_shear_ = ElasticParameters{1.0, p.poisson_ratio}.bulk_modulus();
@@ -69,6 +71,13 @@ Iwan::Iwan(const IwanParameters &p, std::size_t n_points)
 double Iwan::reference_strain(double p) const { return parameters_.strength_ratio * p / shear_modulus(p); }
 double Iwan::mean_pressure(std::size_t i) const { return committed_[i * stride_ + pressure]; }
 double Iwan::loosening(std::size_t i) const { return committed_[i * stride_ + loose]; }
+
+/// (25) integrated: d p / K
+double Iwan::compression(double from, double to) const
+{
+  const double n = parameters_.exponent, softest = bulk_per_shear_ * shear_modulus(to) * std::pow(to, -n);
+  return (n == 1 ? std::log(to / from) : (std::pow(to, 1 - n) - std::pow(from, 1 - n)) / (1 - n)) / softest;
+}
 
 void Iwan::set_initial_stress(std::span<const Stress> effective)
 {
@@ -90,6 +99,8 @@ void Iwan::set_initial_stress(std::span<const Stress> effective)
       state[pressure] = p;
       state[floor_pressure] = std::min(p, std::max(parameters_.residual_ratio * p, parameters_.min_pressure));
       share_out(s, p, state);
+      if (parameters_.reconsolidation > 0)
+        state[extra_ + initial_pressure] = p;
     }
   committed_ = std::move(states);
   has_trial_ = false;

@@ -24,7 +24,7 @@ class Mesh(ColumnTest):
                    for name in ("whole", "fine", "whole/half_mesh")}
         period = spectra["fine"]["period"]
         long = period >= 0.1
-        ratio = spectra["whole"]["surface_x"] / spectra["fine"]["surface_x"] - 1
+        ratio = spectra["whole"]["surface_x_SA"] / spectra["fine"]["surface_x_SA"] - 1
         print(f"{whole['elements']} elements against {fine['elements']}: S_a {100 * np.abs(ratio[long]).max():.2f} %, "
               f"peak {100 * (whole['peak_surface'] / fine['peak_surface'] - 1):.2f} %")
         self.assert_below(np.abs(ratio[long]).max(), 0.02, "0.1 to 0.5 % were measured over 26 s")
@@ -35,7 +35,7 @@ class Mesh(ColumnTest):
         self.assertEqual(check["elements"], half["elements"])
         for key in ("peak_surface", "peak_surface_below", "peak_gamma"):
             self.assert_near(check[key], half[key] / whole[key] - 1, 1e-12, "the same numbers")
-        ratio = spectra["whole/half_mesh"]["surface_x"] / spectra["whole"]["surface_x"] - 1
+        ratio = spectra["whole/half_mesh"]["surface_x_SA"] / spectra["whole"]["surface_x_SA"] - 1
         at = np.argmax(np.abs(ratio) * long)
         self.assert_near(check["spectrum"], ratio[at], 1e-7, "digits of the table")
         self.assert_near(check["spectrum_period"], period[at], 1e-9, "digits of the table")
