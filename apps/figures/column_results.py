@@ -98,6 +98,7 @@ class Column:
         self.title = summary.get("title") or self.scene.get("title") or folder.resolve().name
         self.moving = [axis for axis in "xyz" if self.peak(f"input_a{axis}") > 0]
         self.horizontal = [axis for axis in "xy" if axis in self.moving]
+        self.mesh_frequency = (summary.get("mesh_check") or {}).get("frequency") or np.inf  # of --check-mesh, Hz
         one = len(self.moving) == 1  # else the summary's are those of vectors
         self.peaks = {f"{where}_a{axis}": summary.get(f"peak_{where}") if one else None
                       for axis in self.moving for where in ("input", "surface")}

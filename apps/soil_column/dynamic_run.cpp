@@ -142,6 +142,13 @@ private:
   {
     summary.time_step = run_.time_step();
     summary.bands = motion_.bands();
+    const ColumnLine *line = files_.line();
+    summary.waves = carried_waves(scene_, velocities_,
+                                  line ? softened_velocities(scene_, velocities_, space_, *line, follower_.peaks)
+                                       : std::vector<double>(),
+                                  space_);
+    if (std::string coarse = softened_elements(scene_, summary.waves, motions_); !coarse.empty())
+      summary.warnings.push_back(std::move(coarse));
     if (!grain_files_)
       return;
     const auto n_packings = soil_.grains->owners().size();
