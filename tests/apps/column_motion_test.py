@@ -118,3 +118,8 @@ history_interval = "0.005 s"
         _, summary = self.run_motions(("x", self.record("drift.txt", 'baseline = "quadratic"')), duration="4.1 s",
                                       name="level")
         self.assertEqual(summary["warnings"], [])
+        rows, summary = self.run_motions(("x", self.record("drift.txt", 'baseline = "quadratic"')), name="given",
+                                         duration='4.1 s"\ntime_step = "0.3 ms')
+        self.assertEqual(len(summary["warnings"]), 1, summary["warnings"])
+        self.assertRegex(summary["warnings"][0], r"0\.005 s is 16\.6667 of the time step, .*: rows are 0\.0051 s apart")
+        self.assert_near(rows["time"][1], 0.0051, 1e-12, "round-off")
