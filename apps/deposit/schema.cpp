@@ -255,7 +255,8 @@ constexpr Key output_keys[] = {
    .text = "Folder of the run; left out: results/ and the name of the scene file."},
   {.path = "history_interval", .field = member<&ColumnOutput::history_interval>, .unit = unit::s, .value = "0.01 s",
    .range = {0, 10, true}, .reason = "because rows further apart show no shaking",
-   .text = "Time between rows of the histories, rounded to whole time steps; a consolidation writes every step."},
+   .text = "Time between rows of the histories. A time step that is not given divides it; it is rounded to whole steps "
+           "of one that is given, and if it is shorter every step has a row. A consolidation writes every step."},
   {.path = "depths", .field = member<&ColumnOutput::depths>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths below the surface at which stress paths and motions are recorded. Within the soil."},
@@ -265,8 +266,8 @@ constexpr Key output_keys[] = {
            "walls, else 0 m, as all x are equal where sides are tied."},
   {.path = "profile_interval", .field = member<&ColumnOutput::profile_interval>, .unit = unit::s,
    .presence = Presence::optional, .value = "0.1 s", .range = positive,
-   .text = "Time between profiles over the depth, rounded likewise; left out: maxima only. A consolidation writes "
-           "every step."},
+   .text = "Time between profiles over the depth, rounded to whole time steps; left out: maxima only. A consolidation "
+           "writes every step."},
   {.path = "paraview_interval", .field = member<&ColumnOutput::paraview_interval>, .unit = unit::s,
    .presence = Presence::optional, .value = "0.5 s", .range = positive,
    .text = "Time between files for ParaView, rounded likewise; left out: none. A consolidation writes every step."},

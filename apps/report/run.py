@@ -7,7 +7,7 @@ import shlex
 
 from figures.common import BadInput, note
 
-from . import citation, html, verdicts
+from . import citation, column_tables, html, verdicts
 from .folder import IN_PYTHON, NoResults, Results
 from .quantities import converted, named, shown
 
@@ -90,6 +90,7 @@ class Page:
         sections = [
             html.section("How it went", f'<ul class="verdicts">\n{items}\n</ul>' if items else "", name="verdicts"),
             html.section("Summary", *summary_parts(r), name="summary"),
+            *(column_tables.sections(drawn) if r.program == "soil_column" and drawn else []),
             html.section("Figures", html.figures(self.figures), missing, name="figures"),
             html.section("Going on, and repeating it", *resume_parts(r), name="resume"),
             html.section("Scene", html.text_block(r.scene_text, "scene") if r.scene_text else "", name="scene"),

@@ -72,8 +72,9 @@ void add_expansions(const std::vector<CapExpansion> &caps, Summary &summary)
   summary["expansions"] = Json::array();
   for (const CapExpansion &cap : caps)
     {
-      summary.row("net expansion", "{:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end",
-                  1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
+      if (cap.largest > 0.5e-6) // m, which is not 0.000 mm
+        summary.row("net expansion", "{:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end",
+                    1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
       summary["expansions"].push_back({{"below", cap.layer},
                                        {"depth", cap.depth},
                                        {"largest", cap.largest},
@@ -211,6 +212,7 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
   if (s.grains)
     add_grains(*s.grains, summary);
   summary["depths"] = s.point_depths;
+  summary["motion_depths"] = s.motion_depths;
   if (!s.point_depths.empty())
     summary.row("depths of histories", "{} m, the points nearest to those requested",
                 fmt::format("{:.4g}", fmt::join(s.point_depths, ", ")));

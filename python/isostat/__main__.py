@@ -26,6 +26,7 @@ CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by smal
              "study": "NAME: the runs, tables and figures behind a page of results"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
          "animate": "RESULTS [-o FILE.gif]: packings and their forces during the run, also as .mp4",
+         "motion": "RESULTS [--at surface|input|within|DEPTH] [-o FILE.at2]: a motion of a soil column as PEER AT2",
          "report": "RESULTS: draw figures and report.html of a results folder again, also during its run"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
@@ -57,7 +58,7 @@ def help_text():
 def view(name, words):
     """Becomes the program that draws and reports."""
     os.environ["PYTHONPATH"] = os.path.dirname(__file__)
-    module = ["figures.animation"] if name == "animate" else ["report", name]
+    module = {"animate": ["figures.animation"], "motion": ["figures.motion_file"]}.get(name, ["report", name])
     os.execv(sys.executable, [sys.executable, "-B", "-P", "-u", "-m", *module, *words])
 
 
