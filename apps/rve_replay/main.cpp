@@ -33,12 +33,12 @@ constexpr int xz = 4; ///< of a Stress; of a Gradient it is 2
 struct Options
 {
   std::string record, output, command_line;
-  std::optional<double> inertial_number, damping; ///< run otherwise than in the record
-  std::optional<std::uint64_t> min_steps;         ///< likewise
+  std::optional<double> inertial_number, damping, increment, balance; ///< run otherwise than in the record
+  std::optional<std::uint64_t> min_steps;                             ///< likewise
   std::size_t every = 10;
   bool overwrite = false, quiet = false, no_figures = false;
 
-  bool change_nothing() const { return !(inertial_number || damping || min_steps); }
+  bool change_nothing() const { return !(inertial_number || damping || min_steps || increment || balance); }
 };
 
 /// How the stress of the packing alone compares with what the finite elements were given.
@@ -90,6 +90,13 @@ RveSettings changed(RveSettings settings, const Options &options)
     motion.inertial_number = options.inertial_number;
   motion.damping = options.damping.value_or(motion.damping);
   settings.min_steps = options.min_steps.value_or(settings.min_steps);
+  if (options.increment || options.balance)
+    {
+      StaticStepping stepping = settings.stepping.value_or(StaticStepping{});
+      stepping.increment = options.increment.value_or(stepping.increment);
+      stepping.balance.tolerance = options.balance.value_or(stepping.balance.tolerance);
+      settings.stepping = stepping;
+    }
   return settings;
 }
 
@@ -200,6 +207,9 @@ Summary report_of(const ReplayResult &r, const StrainRecord &record, const Optio
 std::string scene_text(const Options &options, const RveSettings &settings)
 {
   std::string text = fmt::format("record = \"{}\"\nmin_steps = {}\n", options.record, settings.min_steps);
+  if (settings.stepping)
+    text += fmt::format("increment = {}\nbalance = {}\n", settings.stepping->increment,
+                        settings.stepping->balance.tolerance);
   MotionSpec::for_each(settings.motion, [&](const char *name, const std::optional<double> &value) {
     if (value)
       text += fmt::format("{} = {}\n", name, *value); // SI units
@@ -237,6 +247,10 @@ int main(int argc, char **argv)
   line.add_option("--min-steps", options.min_steps, "time steps of an increment, at least")
       ->check(CLI::Range(1, 1000000));
   line.add_option("--damping", options.damping, "other local damping")->check(CLI::Range(0.0, 0.99));
+  line.add_option("--increment", options.increment, "strain from balance to balance, in place of time steps at a rate")
+      ->check(CLI::Range(1e-9, 1e-3));
+  line.add_option("--balance", options.balance, "tolerance of balance of each grain, likewise")
+      ->check(CLI::Range(1e-8, 0.1));
   line.add_option("--every", options.every, "increments between two rows of micromechanics")
       ->check(CLI::Range(1, 1000000000))
       ->capture_default_str();

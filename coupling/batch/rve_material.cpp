@@ -43,6 +43,8 @@ ElementSettings RveMaterialSettings::element() const
   settings.rve.motion = motion;
   settings.rve.frame = column_frame();
   settings.rve.min_steps = min_steps;
+  if (drive.on)
+    settings.rve.stepping = drive;
   settings.undrained = undrained;
   settings.halvings = halvings;
   return settings;

@@ -17,6 +17,7 @@ struct RveMaterialSettings
   std::string cache;   ///< in-situ states, kept for the next start; empty: none are kept
   InSituSettings in_situ;
   MotionSpec motion = controlled_motion();
+  StaticDrive drive;            ///< if on, increments are taken to balance, and of `motion` only the time step counts
   bool undrained = true;        ///< volume strain is stripped (Rve::undrained); false: it is live
   std::size_t realisations = 1; ///< elements of a point; its stress is their mean
   std::uint64_t min_steps = 20; ///< time steps that an increment takes at least, see RveSettings

@@ -13,7 +13,7 @@ namespace isostat
 namespace
 {
 const std::string format_name = "isostat-strain-record";
-constexpr std::uint64_t schema_version = 4; // 3: no load_per_wave; 2: a tolerance of the rate
+constexpr std::uint64_t schema_version = 5; // 4: no static drive; 3: no load_per_wave; 2: a tolerance of the rate
 constexpr const char *gradient_names[] = {"H_xx", "H_xy", "H_xz", "H_yx", "H_yy", "H_yz", "H_zx", "H_zy", "H_zz"};
 constexpr const char *stress_names[] = {"sigma_xx", "sigma_yy", "sigma_zz", "sigma_yz", "sigma_xz", "sigma_xy"};
 
@@ -22,6 +22,10 @@ void write_settings(hdf5::Group root, const RveSettings &settings)
   MotionSpec::for_each(settings.motion,
                        [&](const char *name, const auto &value) { hdf5::write_field(root, name, value); });
   root.set_attribute("min_steps", settings.min_steps);
+  const StaticStepping stepping = settings.stepping.value_or(StaticStepping{.increment = 0});
+  root.set_attribute("increment", stepping.increment); // 0: dynamic
+  root.set_attribute("balance", stepping.balance.tolerance);
+  root.set_attribute("left_out", stepping.balance.left_out);
   root.write("frame", std::span<const double>(settings.frame.data(), 9), "-", 3); // columns, one after the other
 }
 
@@ -30,6 +34,8 @@ RveSettings read_settings(const hdf5::Group &root)
   RveSettings settings;
   MotionSpec::for_each(settings.motion, [&](const char *name, auto &value) { hdf5::read_field(root, name, value); });
   settings.min_steps = root.attribute<std::uint64_t>("min_steps");
+  if (const double increment = root.attribute<double>("increment"); increment > 0)
+    settings.stepping = {increment, {root.attribute<double>("balance"), root.attribute<double>("left_out")}};
   std::ranges::copy(root.read<double>("frame", {3, 3}), settings.frame.data());
   return settings;
 }

@@ -64,7 +64,8 @@ constexpr Key lots[] = {
 
 SceneFragment<RveMaterialSettings> packing_keys()
 {
-  static const KeyTable table{packings, splice<&RveMaterialSettings::motion>("", controlled_motion_keys())};
+  static const KeyTable table{packings, splice<&RveMaterialSettings::motion>("", controlled_motion_keys()),
+                              splice<&RveMaterialSettings::drive>("", static_drive_keys())};
   return {table.keys()};
 }
 
@@ -76,6 +77,10 @@ void check_packings(const SceneDocument &document, const std::string &section, c
   if (packings.library.empty())
     document.refuse(section + ".library", "is missing; soil of grains is made of its specimens. Give library = "
                                           "\"library.h5\", made by isostat library.");
+  for (const char *key : {".increment", ".balance", ".left_out"})
+    if (!packings.drive.on && packings.drive != StaticDrive{} && document.find(section + key))
+      document.refuse(section + key,
+                      "has no effect with drive = \"dynamic\". Leave it out, or set drive = \"static\".");
 }
 
 void check_lot(const SceneDocument &document, const std::string &section, const SpecimenRequest &request,

@@ -10,14 +10,15 @@ namespace isostat
 class SceneDocument;
 
 /// What users choose of how packings run: library, cache, in_situ, realisations, min_steps, contact_damping, damping,
-/// free_grain_damping, inertial_number. Drainage and threads are set by the program.
+/// free_grain_damping, inertial_number, drive, increment, balance, left_out. Drainage and threads are set by the
+/// program.
 SceneFragment<RveMaterialSettings> packing_keys();
 /// Which specimens a soil is made of: relative_density, realisation.
 SceneFragment<SpecimenRequest> specimen_keys();
 /// Points that draw their specimens: `mixed_realisations`, `lot`, `lot_length`.
 SceneFragment<SpecimenRequest> lot_keys();
 
-/// What the table of keys cannot say: soil of grains needs a library.
+/// What the table of keys cannot say: soil of grains needs a library, increments a static drive.
 /// @param section  where they are, "grains"   @throws InputError  no library, a floor above the ceiling
 /// tested: tests/apps/deposit/scene_error_test.cpp, tests/apps/grain_column_test.py
 void check_packings(const SceneDocument &document, const std::string &section, const RveMaterialSettings &packings);

@@ -74,6 +74,7 @@ struct LastIncrement
 {
   Vec3 strain = Vec3::Zero(); ///< along x, y, z, tension positive [-]
   double gamma = 0;           ///< of a cell [-]
+  double driven = 0;          ///< of the component that a stage drives, amount [-]
   // where stresses are kept (dem/drive/servo.hpp): sigma and tau before it, compression positive, and moduli, Pa
   Vec3 stress = Vec3::Zero();
   double tau = 0;
@@ -81,7 +82,7 @@ struct LastIncrement
   Vec3 by_gamma = Vec3::Zero(), of_tau = Vec3::Zero(); ///< d sigma_i / d gamma, d tau / d eps_j
   double shear_modulus = 0;
 
-  ISOSTAT_FIELDS(strain, gamma, stress, tau, moduli_x, moduli_y, moduli_z, by_gamma, of_tau, shear_modulus)
+  ISOSTAT_FIELDS(strain, gamma, driven, stress, tau, moduli_x, moduli_y, moduli_z, by_gamma, of_tau, shear_modulus)
 };
 
 /// The specimen when the first shear stage began: what strains and p'/p0 count from.

@@ -68,13 +68,13 @@ constexpr Key chosen[] = {
 constexpr const char *drives[] = {"dynamic", "static"};
 constexpr Key statics[] = {
   {.path = "drive", .field = member<&StaticDrive::on>, .value = "dynamic", .choices = drives,
-   .text = "How stages that shear advance. dynamic: in time steps, at a rate. static: in increments of strain, each "
-           "of which is taken to balance; rates and dampings are ignored. Preparation is dynamic; static needs a "
-           "stage that shears."},
+   .text = "How stages that shear, or packings of a column, advance. dynamic: in time steps, at a rate. static: in "
+           "increments of strain, each of which is taken to balance; rates, dampings and least steps are ignored. "
+           "Preparation is dynamic; of element tests static needs a stage that shears."},
   {.path = "increment", .field = member_of<StaticDrive, &StaticDrive::increment>, .value = "5e-5",
    .range = {0, 1e-3, true, false},
    .reason = "because there is no other end to an increment, and contacts slide by more than their overlap in one of 1e-3",
-   .text = "static: driven strain of an increment; shorter ones end where the load turns."},
+   .text = "static: largest driven strain of an increment; shorter ones end where a load turns, or a step of a column."},
   {.path = "balance", .field = member_of<StaticDrive, &StaticDrive::balance, &BalanceSpec::tolerance>, .value = "0.01",
    .range = {1e-8, 0.1}, .reason = "because it is relative to the forces on the grain, which have round-off",
    .text = "static: an increment ends when the sum of forces on each grain, and the sum of torques over its radius, "

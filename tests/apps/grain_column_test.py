@@ -151,6 +151,23 @@ class Bits(GrainColumnTest):
         self.assert_done(self.run_on_ranks(1, self.scene, "-o", "parts", "-q", "--resume"))
         self.assert_same_bytes("whole", "parts")
 
+    def test_packings_in_balance(self):
+        self.scene = self.write("static.toml", GRAINS.format(cache=self.cache).replace(
+            "inertial_number = 1e-3", 'drive = "static"\nincrement = 1e-4\nbalance = 0.05'))
+        self.assert_done(self.run_column(self.scene, "-o", "whole", "-q"))
+        self.assertGreater(self.summary_of("whole")["peak_gamma"], 1e-3)
+        code, message = self.stop(2, signal.SIGTERM, 0.1)
+        self.assertEqual(code, 130, message)
+        self.assert_done(self.run_column(self.scene, "-o", "parts", "-q", "--resume", "--threads", 2))
+        self.assert_same_bytes("whole", "parts")
+        replay = self.run_app("rve_replay", "whole/paths/d0", "-q", "-o", "alone", "--no-figures")
+        self.assertIn("bit for bit after all", replay.stdout)
+        tighter = self.run_app("rve_replay", "whole/paths/d0", "-q", "-o", "tighter", "--no-figures", "--balance", 1e-3)
+        self.assert_done(tighter)
+        alone, tighter = self.summary_of("alone"), self.summary_of("tighter")
+        self.assertGreater(tighter["steps"], 1.2 * alone["steps"])
+        self.assertGreater(tighter["shear_error"], 0)
+
 
 class Sands(GrainColumnTest):
     """Two layers of different sands, each from a library of its own."""
@@ -336,6 +353,7 @@ class Mistakes(GrainColumnTest):
                 ('snapshot_depths = ["1 m", "2.5 m"]', 'snapshot_depths = ["4 m"]', "snapshot_depths",
                  "entry 1 is 4 m"),
                 ('depths = ["0.5 m", "2 m"]', 'depths = ["4 m"]', "output.depths", "4 m"),
+                ("inertial_number = 1e-3", "increment = 1e-4", "grains.increment", 'drive = "static"'),
                 ('drainage = "undrained"', 'drainage = "coupled"', "degree = 2")):
             self.assertIn(old, text)
             self.refuse([*parts, "changed.toml:"], scene=self.write("changed.toml", text.replace(old, new, 1)))

@@ -21,6 +21,7 @@ struct Watcher : RunObserver
       turns.push_back(seen);
     if (!state.undrained.liquefaction)
       lost_before = seen.relaxed;
+    course.push_back({state.loading.strain, seen.p});
     last = seen;
     highest = std::max(highest, a.volume()), lowest = std::min(lowest, a.volume());
     if (a.settings.measure_energy)
@@ -36,8 +37,9 @@ struct Watcher : RunObserver
   double worst = 0; ///< imbalance in any row [-]
   std::vector<Observation> turns;
   Observation last{};
-  double lost_before = 0;                ///< energy of the last row before liquefaction, J
-  double highest = 0, lowest = HUGE_VAL; ///< volume, m3
+  std::vector<std::array<double, 2>> course; ///< driven strain [-] and p', Pa
+  double lost_before = 0;                    ///< energy of the last row before liquefaction, J
+  double highest = 0, lowest = HUGE_VAL;     ///< volume, m3
   EnergyBalance energy;
   std::size_t rows = 0;
   std::uint64_t stop_at = 0; ///< increments of a stage
@@ -69,6 +71,20 @@ Result run(const Programme &programme, const Snapshot &initial, int threads = 1,
   EXPECT_EQ(run_programme(programme, assembly, result.state, result.watcher), RunOutcome::finished);
   result.end = assembly.checkpoint();
   return result;
+}
+
+/// The end of a run that was stopped after some increments, and resumed.
+Snapshot resumed_after(std::uint64_t increments, const Programme &programme, const Snapshot &initial)
+{
+  Watcher watcher;
+  watcher.stop_at = increments;
+  DriveState state;
+  Assembly first(initial);
+  EXPECT_EQ(run_programme(programme, first, state, watcher), RunOutcome::interrupted);
+  Assembly second(first.checkpoint());
+  watcher.stop_at = 0;
+  EXPECT_EQ(run_programme(programme, second, state, watcher), RunOutcome::finished);
+  return second.checkpoint();
 }
 
 UndrainedCyclic cyclic(std::uint64_t cycles, double amplitude = 60e3)
@@ -176,15 +192,7 @@ TEST(StaticDrive, HasTheSameBitsForAnyNumberOfThreadsAndAfterAStop)
       const Programme programme = isostat::programme(cyclic(1), 2e-5);
       const Snapshot whole = run(programme, in(domain)).end;
       test::expect_same_bits(run(programme, in(domain), 3).end, whole);
-      Watcher watcher;
-      watcher.stop_at = 7;
-      DriveState state;
-      Assembly first(in(domain));
-      ASSERT_EQ(run_programme(programme, first, state, watcher), RunOutcome::interrupted);
-      Assembly second(first.checkpoint());
-      watcher.stop_at = 0;
-      ASSERT_EQ(run_programme(programme, second, state, watcher), RunOutcome::finished);
-      test::expect_same_bits(second.checkpoint(), whole);
+      test::expect_same_bits(resumed_after(7, programme, in(domain)), whole);
     }
 }
 
@@ -208,6 +216,33 @@ TEST(StaticDrive, AgreesWithASlowDynamicTestWhereFrictionIsGone)
   const Watcher still = run(fine, smooth).watcher, slow = run(dynamic, smooth).watcher;
   EXPECT_BELOW_BECAUSE(still.last.p, 165e3, "rough grains hold 200 kPa; these 157, others less than 100");
   EXPECT_NEAR_BECAUSE(still.last.p / slow.last.p, 1, 0.05, "1 % was seen; contacts yield in all increments");
+}
+
+TEST(StaticDrive, IncrementsFollowTheFallOfPressureAlsoAfterAStop)
+{
+  // undrained triaxial cycles whose lateral strain is the driven one, half of the axial strain
+  Path path;
+  path.drive = DrivenComponent::x;
+  path.components[1].strain_ratio = -2;
+  path.components[2].strain_ratio = 1;
+  path.turn.low = -50e3, path.turn.high = 50e3;
+  path.end.strain = 0.01, path.end.cycles = 40;
+  const Programme programme = isostat::programme(path, 1e-4);
+  const Snapshot initial = test::periodic_specimen(300, 11);
+  const Result whole = run(programme, initial);
+  const auto &course = whole.watcher.course; // driven strain, p'
+  std::size_t shortened = 0;
+  for (std::size_t k = 2; k < course.size(); ++k)
+    {
+      const auto step = [&](std::size_t i) { return std::abs(course[i][0] - course[i - 1][0]); };
+      const double fall = course[k - 2][1] - course[k - 1][1],
+                   limit = 0.01 * whole.state.path.p0() * step(k - 1) / fall;
+      const bool limited = fall > 0 && limit > 0.002 * 1e-4 && limit < 1e-4;
+      EXPECT_BELOW_BECAUSE(step(k), (limited ? limit : 1e-4) * (1 + 1e-6), "1 % of p0' if it falls as before");
+      shortened += limited && step(k) > 0.999 * limit;
+    }
+  EXPECT_GT(shortened, 5u);
+  test::expect_same_bits(resumed_after(course.size() / 2, programme, initial), whole.end);
 }
 
 TEST(StaticDrive, CoarseIncrementsAreBalancedToo)

@@ -24,13 +24,12 @@ constexpr double share_where_kept = 0.2;              ///< of an increment: stre
 constexpr double largest_fall = 0.01;                 ///< of p' in an increment, of p0'
 constexpr double modulus_over_affine = 0.5;           ///< after a reversal grains give way: 0.55 to 0.7 was seen
 
-/// Strain, by its largest component, in which p' falls by the largest fall if it falls as in the last increment [-].
+/// Driven strain in which p' falls by the largest fall if it falls as in the last increment [-].
 double strain_of_fall(DriveState &state, const Vec3 &stress)
 {
   LastIncrement &last = state.increment;
   const double fall = std::exchange(last.stress, stress).mean() - stress.mean();
-  const double driven = std::max(last.strain.cwiseAbs().maxCoeff(), std::abs(last.gamma));
-  return fall > 0 ? largest_fall * state.path.p0() * driven / fall : std::numeric_limits<double>::infinity();
+  return fall > 0 ? largest_fall * state.path.p0() * last.driven / fall : std::numeric_limits<double>::infinity();
 }
 } // namespace
 
@@ -171,6 +170,7 @@ double ShearStage::increment(const StageContext &c, const Observation &seen) con
   if (loading.slope > 0) // most of the way, so that a load which grows stiffer does not pass its turn by much
     step = std::min(step, std::max(approach * load_left / loading.slope, least_share * whole));
   loading.strain += direction * step;
+  c.state.increment.driven = step;
   note_half_cycle(c.state, present);
   return direction * step;
 }

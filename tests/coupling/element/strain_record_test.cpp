@@ -53,7 +53,7 @@ TEST_F(StrainRecordTest, OfAnOlderSchemaIsRefused)
   file.commit();
   const std::string message = message_of<InputError>([&] { read_strain_record(folder); });
   EXPECT_THAT(message, testing::StartsWith((folder / "packing.h5").string()));
-  EXPECT_THAT(message, testing::HasSubstr("strain record schema 1 was written by another version; this one reads 4. "
+  EXPECT_THAT(message, testing::HasSubstr("strain record schema 1 was written by another version; this one reads 5. "
                                           "Repeat it with the version that wrote it"));
 }
 } // namespace
