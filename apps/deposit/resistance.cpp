@@ -52,14 +52,16 @@ void check_resistance(const SceneDocument &document, const ColumnScene &scene, s
     return;
   const ColumnLayer &soil = scene.layers[layer];
   const Stress stress = middle_stress(scene, layer);
-  const double strength = soil.iwan.strength_ratio * (stress[0] + stress[1] + stress[2]) / (3 * stress[2]);
+  const double strength = soil.sand().strength_ratio * (stress[0] + stress[1] + stress[2]) / (3 * stress[2]);
   const SandDensity &density = soil.sand_density;
   const char *key = density.n1_60cs ? "n1_60cs" : density.qc1ncs ? "qc1ncs" : "relative_density";
   if (*ratio >= strength)
-    document.refuse(fmt::format("layer.{}.{}", layer, key),
-                    fmt::format("gives a cyclic resistance of {:.3g} sigma'_v0 in the middle of the layer, where its "
-                                "strength is {:.3g} sigma'_v0. Give a higher strength_ratio, a k0 nearer to 1, or a "
-                                "lower value.",
-                                *ratio, strength));
+    document.refuse(
+        fmt::format("layer.{}.{}", layer, key),
+        fmt::format(
+            "gives a cyclic resistance of {:.3g} sigma'_v0 in the middle of the layer, where its "
+            "strength is {:.3g} sigma'_v0. Give a higher strength_ratio or shear_strength, a k0 nearer to 1, or a "
+            "lower value.",
+            *ratio, strength));
 }
 } // namespace isostat
