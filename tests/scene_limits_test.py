@@ -6,9 +6,9 @@ import unittest
 from support import ROOT
 
 SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.cpp", "apps/deposit/plate.cpp",
-           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/deposit/biaxial.cpp",
-           "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp", "fem/material/mohr_coulomb_scene.cpp",
-           "fem/solve/newton_scene.cpp")
+           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/deposit/resistance.cpp",
+           "apps/deposit/biaxial.cpp", "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp",
+           "fem/material/mohr_coulomb_scene.cpp", "fem/solve/newton_scene.cpp")
 # The key of a refusal: "mesh.degree", prefix + ".density", fmt::format("stage.{}.friction", i), key("lot"), and the
 # {"cohesion", "must be ..."} of mohr_coulomb_problem().
 REFUSED = re.compile(r'(?:refuse\(\s*|key\()(?:\w+ \+ |fmt::format\(\s*)?"([\w.{}]+)"|return \{"(\w+)",\s*"')

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rules that bind several keys of a column's scene.
 #include "apps/deposit/box.hpp"
+#include "apps/deposit/resistance.hpp"
 #include "apps/deposit/slope.hpp"
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
@@ -103,7 +104,10 @@ void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t 
     document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water should move.");
   if (layer.material == LayerMaterial::iwan)
-    check_iwan(document, prefix, layer.sand());
+    {
+      check_iwan(document, prefix, layer.sand(), layer.sand_density);
+      check_resistance(document, scene, i);
+    }
   if (layer.material == LayerMaterial::mohr_coulomb)
     check_mohr_coulomb(document, prefix, layer.mohr_coulomb);
   constexpr unsigned most = 1000000;

@@ -123,6 +123,10 @@ void check_curve(const SceneDocument &document, ColumnScene &scene, std::size_t 
     document.refuse(prefix + "unloading", "needs the damping of a curve. Give one, or unloading = \"masing\".");
   if (layer.shear_strength && document.find(prefix + "strength_ratio"))
     document.refuse(prefix + "shear_strength", "excludes strength_ratio, which follows from it. Keep one of them.");
+  if (curve.is_given() && layer.sand_density.given())
+    document.refuse(prefix + "curve",
+                    "excludes a resistance by density (n1_60cs, qc1ncs, relative_density), which is that "
+                    "of the hyperbola. Give contraction and dilation, or remove the curve.");
   if (curve.is_given() && !document.find(prefix + "contraction") && !document.find(prefix + "dilation"))
     layer.iwan.contraction = layer.iwan.dilation = 0;
 }

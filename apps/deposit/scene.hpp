@@ -7,7 +7,7 @@
 #include "base/scene/fragment.hpp"
 #include "coupling/batch/rve_material_settings.hpp"
 #include "coupling/in_situ/specimen_request.hpp"
-#include "fem/material/iwan.hpp"
+#include "fem/material/liquefaction_resistance.hpp"
 #include "fem/material/mohr_coulomb.hpp"
 #include "fem/material/soil.hpp"
 #include "fem/motion/base.hpp"
@@ -76,6 +76,7 @@ struct ColumnLayer : Layer
   LayerCurve curve;                     ///< of iwan
   std::optional<double> shear_strength; ///< of iwan at in_situ_pressure, Pa; left out: iwan.strength_ratio
   IwanParameters iwan;                  ///< ignored by other materials; its stiffness is the layer's, see sand()
+  SandDensity sand_density;             ///< likewise; resisting_layer() gives its sand
   MohrCoulombParameters mohr_coulomb;   ///< likewise, see frictional_soil()
   SpecimenRequest grains;               ///< ignored by other materials
   std::string table;                    ///< only in files: when a scene has been read, its rows have become layers

@@ -272,7 +272,8 @@ constexpr Key output_keys[] = {
    .text = "Folder of the run; left out: results/ and the name of the scene file."},
   {.path = "history_interval", .field = member<&ColumnOutput::history_interval>, .unit = unit::s, .value = "0.01 s",
    .range = {0, 10, true}, .reason = "because rows further apart show no shaking",
-   .text = "Time between rows of the histories, rounded to whole time steps; a consolidation writes every step."},
+   .text = "Time between rows of the histories. A time step that is not given divides it; it is rounded to whole steps "
+           "of one that is given, and if it is shorter every step has a row. A consolidation writes every step."},
   {.path = "depths", .field = member<&ColumnOutput::depths>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths below the surface at which stress paths and motions are recorded. Within the soil."},
@@ -282,8 +283,8 @@ constexpr Key output_keys[] = {
            "walls, else 0 m, as all x are equal where sides are tied."},
   {.path = "profile_interval", .field = member<&ColumnOutput::profile_interval>, .unit = unit::s,
    .presence = Presence::optional, .value = "0.1 s", .range = positive,
-   .text = "Time between profiles over the depth, rounded likewise; left out: maxima only. A consolidation writes "
-           "every step."},
+   .text = "Time between profiles over the depth, rounded to whole time steps; left out: maxima only. A consolidation "
+           "writes every step."},
   {.path = "paraview_interval", .field = member<&ColumnOutput::paraview_interval>, .unit = unit::s,
    .presence = Presence::optional, .value = "0.5 s", .range = positive,
    .text = "Time between files for ParaView, rounded likewise; left out: none. A consolidation writes every step."},
@@ -294,7 +295,7 @@ constexpr Key output_keys[] = {
    .text = "Damping of the oscillators of response spectra."},
 };
 
-constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}};
+constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}, {"resistance"}};
 
 using enum Dimension;
 constexpr Dimension dimensions[] = {length, pressure, angle, rate, density, velocity, acceleration, frequency, duration, interval};
@@ -334,6 +335,7 @@ const SceneSchema &column_schema()
                              splice<&ColumnLayer::curve>("layer", curve_keys(), iwan),
                              KeyRun(shear_strength_key, "layer"),
                              splice<&ColumnLayer::iwan>("layer", iwan_keys(), iwan),
+                             splice<&ColumnLayer::sand_density>("layer", sand_density_keys(), iwan),
                              splice<&ColumnLayer::mohr_coulomb>("layer", mohr_coulomb_keys(), mohr_coulomb),
                              splice<&ColumnLayer::grains>("layer", specimen_keys(), grains),
                              KeyRun(own_sand_key, "layer"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/deposit/soil_material.hpp"
 
+#include "apps/deposit/resistance.hpp"
 #include "base/error.hpp"
 #include "dem/prepare/random.hpp"
 
@@ -136,10 +137,12 @@ bool has_weak_zone(const ColumnScene &scene)
 /// What points are made of: the layers, then what they are in a weak zone.
 std::vector<ColumnLayer> soils_of(const ColumnScene &scene)
 {
-  std::vector<ColumnLayer> soils = scene.layers;
+  std::vector<ColumnLayer> soils;
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    soils.push_back(resisting_layer(scene, k));
   if (has_weak_zone(scene))
-    for (const ColumnLayer &layer : scene.layers)
-      soils.push_back(weakened(layer, scene.biaxial.weak));
+    for (std::size_t k = 0; k < scene.layers.size(); ++k)
+      soils.push_back(weakened(soils[k], scene.biaxial.weak));
   return soils;
 }
 

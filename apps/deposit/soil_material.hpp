@@ -52,8 +52,8 @@ using UserMaterials = std::map<std::string, std::function<std::unique_ptr<Materi
 /// biaxial block behind them, brought to their stress in situ. All points with grains are one material, whose packings
 /// are placed on the ranks together, whatever lies between the layers.   Collective.
 /// @param user  of the layers whose material is user
-/// @throws InputError  no such specimens; naming the layer, a stress that its material cannot bear, or a user material
-/// that is missing or not asked for
+/// @throws InputError  no such specimens; naming the layer, a stress that its material cannot bear, a resistance that
+/// it cannot have, or a user material that is missing or not asked for
 /// @throws RunFailure  stress not reached
 SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int threads, const UserMaterials &user);
 

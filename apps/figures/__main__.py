@@ -19,7 +19,7 @@ except ModuleNotFoundError as missing:
         raise
     sys.exit(f"error: Python has no module {missing.name}: install it, apt-get install python3-{missing.name}")
 
-PROGRAMS = ("calibrate", "element_test", "resistance", "micromechanics", "soil_column", "rve_replay",
+PROGRAMS = ("calibrate", "element_test", "resistance", "micromechanics", "soil_column", "soil_test", "rve_replay",
             "biaxial", "column_ensemble")
 
 

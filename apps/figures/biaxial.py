@@ -205,13 +205,13 @@ def band(block):
 
 @draws("fig_grain_maps")
 def grain_maps(block):
-    """Void ratio and redundancy index at the end, of packings."""
+    """Void ratio and redundancy index at the end, of packings; white: no grains."""
     if not block.maps["redundancy"].any():
         return None
     figure, axes = plt.subplots(1, 2, figsize=(5.4, 3.6), constrained_layout=True)
     for panel, name, label in zip(axes, ("void_ratio", "redundancy"), ("Void ratio $e$", "Redundancy index $I_R$")):
-        field = block.maps[name][-1]
-        ends = np.quantile(field, [0.01, 0.99])
+        field = np.where(block.maps["void_ratio"][-1] > 0, block.maps[name][-1], np.nan)
+        ends = np.nanquantile(field, [0.01, 0.99])
         image = block.show(panel, field, *ends, f"{100 * block.strain[-1]:.2g} %")
         panel.set_xlabel("$x$ (m)")
         figure.colorbar(image, ax=panel, label=label, shrink=0.8, extend=cut_ends(field, *ends))

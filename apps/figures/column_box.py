@@ -63,7 +63,7 @@ class Mesh:
 @draws("fig_box")
 def box_maps(column):
     """r_u where its mean is largest and at the end, shear strain at the end, of packings I_R where its mean is
-    smallest, over the mesh as it has moved."""
+    smallest (white: no grains), over the mesh as it has moved; grey: the base at the start."""
     if not is_box(column) or column.plate:
         return None
     maps, mesh = column.maps, Mesh(column.maps)
@@ -76,7 +76,7 @@ def box_maps(column):
         fields = [("ru", worst, maps["ru"][worst], 0, 1, "viridis", r"$r_u$"),
                   ("ru", len(mean) - 1, maps["ru"][-1], 0, 1, "viridis", r"$r_u$")] + fields
     if "redundancy" in maps:
-        mean = maps["redundancy"].mean(axis=1)
+        mean = np.nanmean(maps["redundancy"], axis=1)
         worst = int(np.argmin(mean))
         fields.append(("redundancy", worst, maps["redundancy"][worst], 0, 2, "RdBu", r"$I_R$"))
     figure, panels = plt.subplots(len(fields), 1, figsize=(7.2, 2.2 * len(fields)), layout="constrained", squeeze=False)

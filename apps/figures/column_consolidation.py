@@ -8,8 +8,14 @@ from .column_soil import TIMES, depth_axis, time_bar
 from .common import BLACK, BLUE, note, plt
 from .drawing import draws
 
+UNITS = (("years", 365.25 * 86400), ("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("s", 1.0))
 TIME_FACTORS = (0.01, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.5)
 MIN_COMPARED = 0.01  # time factor from which the exact series is compared: earlier the mesh cannot show the front
+
+
+def unit_of(last):
+    """Name and length (s) of the unit for times up to the last one: the largest that is not longer than half of it."""
+    return next(((name, length) for name, length in UNITS if last >= 2 * length), UNITS[-1])
 
 
 def exact_solution(column):
@@ -30,7 +36,8 @@ def chosen_rows(time, exact):
 
 @draws("fig_isochrones")
 def isochrones(column):
-    """Excess pore pressure over the depth, next to Terzaghi's series if it applies."""
+    """Excess pore pressure over the depth, next to Terzaghi's series if it applies; dotted: boundaries between
+    layers."""
     pressure = column.profile("u")
     if not column.consolidation or pressure is None:
         return None
@@ -39,16 +46,19 @@ def isochrones(column):
     if rows.size == 0:
         return None
     figure, axes = plt.subplots(figsize=(5.6, 4.4), layout="constrained")
+    unit, length = unit_of(time[-1])
+    time = time / length
     norm = LogNorm(*(time[rows[[0, -1]]] if rows.size > 1 else np.array([0.5, 2]) * time[rows[0]]))
-    time_bar(figure, axes, norm, norm.vmax)
+    time_bar(figure, axes, norm, norm.vmax, unit=unit)
     fine = np.linspace(0, exact.height, 400) if exact else None
     for row in rows:
         axes.plot(pressure[row] / 1e3, depth, color=TIMES(norm(time[row])), linewidth=2.2 if exact else 1.2,
                   label="computed" if row == rows[-1] else None)
         if exact:
-            axes.plot(exact.pressure(fine, time[row]) / 1e3, fine, color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)),
-                      label="Terzaghi" if row == rows[-1] else None)
+            axes.plot(exact.pressure(fine, length * time[row]) / 1e3, fine, color=BLACK, linewidth=0.8,
+                      linestyle=(0, (4, 2)), label="Terzaghi" if row == rows[-1] else None)
     if exact:
+        time = length * time
         report("pore pressure", [np.abs(pressure[k] - exact.pressure(depth, time[k])).max() / exact.p0
                                  for k in range(len(time))], time, exact, "of the initial one")
         axes.legend(loc="upper right")
@@ -78,18 +88,19 @@ def settlement(column):
         note("settlement: fewer than two times; not drawn")
         return None
     figure, axes = plt.subplots(figsize=(5.8, 3.6), layout="constrained")
-    axes.plot(time, 1e3 * values, color=BLUE, linewidth=2.4, alpha=0.75, label="computed")
+    unit, length = unit_of(time[-1])
+    axes.plot(time / length, 1e3 * values, color=BLUE, linewidth=2.4, alpha=0.75, label="computed")
     if exact:
         fine = np.geomspace(time[0], time[-1], 400)
-        axes.plot(fine, 1e3 * exact.settlement(fine), color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)),
+        axes.plot(fine / length, 1e3 * exact.settlement(fine), color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)),
                   label="Terzaghi")
         last = exact.height * exact.load / exact.modulus
         report("settlement", np.abs(values - exact.settlement(time)) / last, time, exact, "of the last one")
         axes.legend(loc="lower left")
-        second = axes.secondary_xaxis("top", functions=(lambda t: t * exact.c / exact.height**2,
-                                                        lambda factor: factor * exact.height**2 / exact.c))
+        factor = length * exact.c / exact.height**2
+        second = axes.secondary_xaxis("top", functions=(lambda t: t * factor, lambda t_v: t_v / factor))
         second.set_xlabel("Time factor $T_v$")
-    axes.set(xscale="log", xlim=(time[0], time[-1]), ylim=(0, None))
+    axes.set(xscale="log", xlim=(time[0] / length, time[-1] / length), ylim=(0, None))
     axes.invert_yaxis()
-    axes.set(xlabel="Time (s)", ylabel="Settlement (mm)")
+    axes.set(xlabel=f"Time ({unit})", ylabel="Settlement (mm)")
     return figure

@@ -10,6 +10,7 @@ import csv
 
 import numpy as np
 
+from .column_results import broken
 from .common import BLACK, BLUE, GREY, ORANGE, BadInput, legend_below, letters, plt, read_history
 from .drawing import Drawing, draws
 from .files import read_parsed
@@ -44,6 +45,7 @@ class Ensemble:
                         if name not in ("member", "packings", "record", "same_as")}
         self.has_records = any(row["record"] for row in rows)
         self.folders = [folder / "members" / name for name in self.names]
+        self.boundaries = [depth for path in self.folders[:1] for depth in boundaries_of(path)]
 
     def curve(self, kind, name):
         """Abscissa and the table {mean, p16, p50, p84} of a curve, in the units of its label; None: there is none."""
@@ -61,6 +63,14 @@ class Ensemble:
             yield from ((x, factor * y) for x, y in member_curve(folder, kind, name))
 
 
+def boundaries_of(folder):
+    """Depths between the layers of a run, m; none if its summary is missing."""
+    try:
+        return [layer["bottom"] for layer in read_parsed(folder / "summary.json").get("layers", [])][:-1]
+    except OSError:
+        return []
+
+
 def member_curve(folder, kind, name):
     """The curve of one member, or nothing where its file does not exist."""
     try:
@@ -70,7 +80,7 @@ def member_curve(folder, kind, name):
                 yield (file["node_depth" if kind == "nodes" else "depth"][()], file[name.replace("max_", "peak_")][()])
         elif kind == "spectra":
             table = read_history(folder / "spectra.csv")
-            axes = [table[key] for key in ("surface_x", "surface_y") if key in table]
+            axes = [table[key] for key in ("surface_x_SA", "surface_y_SA") if key in table]
             yield table["period"], np.max(axes, axis=0)
         elif kind == "history":
             table = read_history(folder / "history.csv")
@@ -88,8 +98,12 @@ def member_curve(folder, kind, name):
 def draw(axes, ensemble, kind, name, upright=False, alone=False):
     """Band, median and members; `upright`: the abscissa is the depth, downwards; `alone`: members without the rest."""
     x, band = ensemble.curve(kind, name)
+    layers = ensemble.boundaries if upright and kind != "nodes" else []  # values of points jump between them
+    band = {key: broken(layers, x, values)[1] for key, values in band.items()}
+    x = broken(layers, x, x)[1]
     has_band = np.isfinite(band["p16"]).any()
     for k, (x_member, y) in enumerate(ensemble.each(kind, name)):
+        x_member, y = broken(layers, x_member, y)
         axes.plot(*((y, x_member) if upright else (x_member, y)), color=GREY, linewidth=0.5, alpha=0.6,
                   label=None if k or alone else "member")
     if alone:

@@ -10,10 +10,10 @@ from .drawing import draws
 
 @draws("fig_expansion")
 def expansion(column):
-    """Below less permeable layers: net expansion and settlement, above the volumetric strain over depth and time, on
-    one scale for both signs."""
+    """Below less permeable layers (black lines): net expansion and settlement, above the volumetric strain over depth
+    and time, on one scale for both signs; dotted: boundaries between layers."""
     caps = dict(zip((f"expansion_{k}" for k in range(len(column.columns))), column.capped_boundaries()))
-    names = [name for name in caps if name in column.columns]
+    names = [name for name in caps if column.peak(name) > 1e-6]
     strain = column.profile("eps_zz")
     if not names or strain is None or len(column.profiles["time"]) < 2:
         return None

@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.lines import Line2D
 
-from .column_soil import (LIQUEFIED_RU, MIN_RU, depth_axis, draw_input, edges, outline, pore_pressure_ratio,
-                          profiles_in_time)
+from .column_soil import (LIQUEFIED_RU, MIN_RU, cells_over_depth, depth_axis, draw_input, edges, outline, paged,
+                          pore_pressure_ratio, profiles_in_time)
 from .common import BLACK, BLUE, GREEN, ORANGE, RED, index_label, letters, plt
 from .drawing import draws
 
@@ -26,7 +26,8 @@ def label_of(grains, names=("IR_constraints",)):
 
 @draws("fig_grains_profiles")
 def grains_profiles(column):
-    """Packings of grains: redundancy index I_R, coordination number, fabric over the depth."""
+    """Packings of grains: redundancy index I_R, coordination number, fabric over the depth at several times; dashed:
+    I_R = 1 and no fabric, dotted: boundaries between layers."""
     grains = column.grains.profiles
     if "IR" not in grains:
         return None
@@ -43,12 +44,11 @@ def grains_profiles(column):
 
 
 def wet_cells(column):
-    """r_u as [depth x time] from the surface down, with its depths and times; None in a dry soil."""
+    """r_u as [time x depth], with its depths and times; None in a dry soil."""
     ru = pore_pressure_ratio(column)
     if ru is None or len(column.profiles["time"]) < 2:
         return None
-    order = np.argsort(column.profiles["depth"])
-    return ru[:, order].T, column.profiles["depth"][order], column.profiles["time"]
+    return ru, column.profiles["depth"], column.profiles["time"]
 
 
 def draw_onset(axes, depth, time, reached, **style):
@@ -58,20 +58,22 @@ def draw_onset(axes, depth, time, reached, **style):
 
 
 def shade_index(column, figure, axes, aspect):
-    """Colours of I_R over time and depth, and their bar; the borders of the cells in both. aspect: of the bar"""
+    """Colours of I_R over time and depth, white where there are no grains, and their bar; the borders of the cells in
+    both and the values within. aspect: of the bar"""
     grains = column.grains.profiles
-    time, depth, index = grains["time"], grains["depth"], grains["IR"].T
-    x, y = edges(time, time[0], time[-1]), edges(depth, 0, column.bottom(depth))
+    time, (y, index) = grains["time"], cells_over_depth(column, grains["depth"], grains["IR"])
+    x = edges(time, time[0], time[-1])
     shade = axes.pcolormesh(x, y, index, cmap="RdBu", rasterized=True,
                             norm=TwoSlopeNorm(ISOSTATIC, 0, max(2.0, float(np.nanmax(index)))))
     figure.colorbar(shade, ax=axes, aspect=aspect, pad=0.02).set_label(label_of(grains))
     axes.grid(False)
-    return x, y
+    return x, y, index
 
 
 @draws("fig_grains_map")
 def grains_map(column):
-    """I_R over depth and time; next to it when each depth falls below I_R = 1 and exceeds r_u = 0.95."""
+    """I_R over depth and time, white where there are no grains; next to it when each depth falls below I_R = 1 and
+    exceeds r_u = 0.95; dotted: boundaries between layers."""
     grains = column.grains.profiles
     if "IR" not in grains or len(grains["time"]) < 2:
         return None
@@ -79,15 +81,15 @@ def grains_map(column):
     figure, ((top, corner), (axes, side)) = plt.subplots(
         2, 2, figsize=(8.6, 4.9), sharex="col", height_ratios=(1, 2.6), width_ratios=(3.2, 1), layout="constrained")
     draw_input(column, top)
-    x, y = shade_index(column, figure, axes, 25)
-    outline(axes, x, y, ir < ISOSTATIC, colors=BLACK, linewidths=1.0)
+    x, y, index = shade_index(column, figure, axes, 25)
+    outline(axes, x, y, index < ISOSTATIC, colors=BLACK, linewidths=1.0)
     draw_onset(side, depth, time, ir < ISOSTATIC, marker="o", markersize=4, color=BLACK)
     wet = wet_cells(column)
     if wet:
         ru, places, times = wet
-        outline(axes, edges(times, times[0], times[-1]), edges(places, 0, column.bottom(depth)), ru > LIQUEFIED_RU,
-                colors=ORANGE, linewidths=0.8)
-        draw_onset(side, places, times, ru > LIQUEFIED_RU, marker="o", markersize=7.5, color=ORANGE,
+        borders, wet_ru = cells_over_depth(column, places, ru)
+        outline(axes, edges(times, times[0], times[-1]), borders, wet_ru > LIQUEFIED_RU, colors=ORANGE, linewidths=0.8)
+        draw_onset(side, places, times, ru.T > LIQUEFIED_RU, marker="o", markersize=7.5, color=ORANGE,
                    markerfacecolor="none", markeredgewidth=1.3)
     finish_map(column, (top, corner, axes, side), depth, time, wet)
     return figure
@@ -117,7 +119,7 @@ def finish_map(column, panels, depth, time, wet):
 def marked(axes, time, values, at, colour):
     """A dot on a curve."""
     if at is not None:
-        axes.plot(at, np.interp(at, time, values), "o", color=colour, markersize=4.5, markeredgecolor=BLACK,
+        axes.plot(at, values[np.searchsorted(time, at)], "o", color=colour, markersize=4.5, markeredgecolor=BLACK,
                   markeredgewidth=0.6, zorder=6)
 
 
@@ -166,11 +168,16 @@ def draw_yielding(column, axes, depth, prefix):
 
 @draws("fig_grains_history")
 def grains_history(column):
-    """I_R, r_u and yielding contacts at the output depths."""
+    """I_R, r_u and yielding contacts at the output depths; dashed, red: I_R = 1 and r_u = 0.95."""
     grains = column.grains
     points = [(depth, prefix) for depth, prefix in grains.points if f"{prefix}_IR" in grains.columns]
     if not points or len(grains.columns["time"]) < 2:
         return None
+    return paged(points, lambda some: draw_grains_history(column, some))
+
+
+def draw_grains_history(column, points):
+    grains = column.grains
     wet = any(column.peak(f"{prefix}_ru") > MIN_RU for _, prefix in points)
     n, shades = len(points), plt.get_cmap("plasma")(np.linspace(0.0, 0.85, len(points)))
     figure, panels = plt.subplots(1 + wet + n, 1, figsize=(7.2, 2.1 * (1 + wet) + 0.95 * n + 0.7), sharex=True,

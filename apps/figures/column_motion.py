@@ -3,16 +3,14 @@
 import numpy as np
 
 from .column_analysis import exact_transfer, response_spectrum, smoothed_transfer, transfer_function
+from .column_soil import MOST_DEPTHS
 from .common import BLACK, BLUE, GREY, ORANGE, letters, note, plt
 from .drawing import draws
+from .site_response import input_name, spectrum, transfer
 
 PERIODS = np.geomspace(0.02, 5, 160)
 COLOURS = {"x": BLUE, "y": ORANGE, "z": GREY}
 ROOM = 1.75  # limits of a panel over its peak: room for the peak's label between curve and axis
-
-
-def input_name(column):
-    return "outcrop" if column.base else "base"
 
 
 def peak_text(drawn, of_all_steps):
@@ -34,8 +32,8 @@ def peak_mark(axes, t, a, colour, of_all_steps=None):
 
 @draws("fig_motions")
 def motions(column):
-    """Acceleration of input and surface, for each direction that moves."""
-    # on one scale
+    """Acceleration of input and surface, for each direction that moves, on one scale. The input is the outcrop motion
+    of the rock or, above a rigid base, the motion within; dots: largest values."""
     if column.consolidation or not column.moving:
         return None
     rows = len(column.moving)
@@ -59,17 +57,18 @@ def motions(column):
 
 
 def column_spectrum(column, where, axis):
-    """Periods and S_a: of every step of the run if it left them, else of the rows, which are fewer and filtered."""
-    if f"{where}_{axis}" in column.spectra:
-        return column.spectra["period"], column.spectra[f"{where}_{axis}"]
+    """Periods and SA: of every step of the run if it left them, else of the rows, which are fewer and filtered."""
+    if f"{where}_{axis}_SA" in column.spectra:
+        return column.spectra["period"], column.spectra[f"{where}_{axis}_SA"]
     a, dt = column.motion(f"{where}_a{axis}")
     return PERIODS, response_spectrum(a, dt, PERIODS, column.spectrum_damping)
 
 
 @draws("fig_spectra")
 def spectra(column):
-    """Response spectra of input and surface of every step (spectra.csv), and their ratio; grey: periods that belong to
-    frequencies above analysis.highest_frequency."""
+    """Response spectra (absolute acceleration SA; spectra.csv has the pseudo-acceleration PSA, too) of input and
+    surface from every step and, thin, at the output depths from the rows of the history, and the ratio of surface and
+    input (dashed: 1); grey: periods that belong to frequencies above analysis.highest_frequency."""
     axes_moving = [axis for axis in column.moving if column.has(f"surface_a{axis}")]
     if column.consolidation or not axes_moving:
         return None
@@ -83,12 +82,23 @@ def spectra(column):
         for where, label, colour in (("input", f"{input_name(column)} (input)", BLACK), ("surface", "surface", BLUE)):
             periods, of[where] = column_spectrum(column, where, axis)
             top.plot(periods, of[where], color=colour, label=label)
+        draw_depths(column, top, axis)
         bottom.plot(periods, of["surface"] / of["input"], color=BLACK)
         bottom.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
         top.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
     letters(panels)
     finish_spectra(panels, column.spectrum_damping, column.damping["viscous_above"])
     return figure
+
+
+def draw_depths(column, axes, axis):
+    """Of some of the output depths, from the first period on that the rows of the history show."""
+    known = [k for k, depth in enumerate(column.motion_depths) if depth is not None]
+    known = [known[k] for k in np.unique(np.linspace(0, len(known) - 1, min(len(known), MOST_DEPTHS)).astype(int))]
+    for k, shade in zip(known, plt.get_cmap("plasma")(np.linspace(0.0, 0.85, max(1, len(known))))):
+        depth = column.motion_depths[k]
+        periods, absolute, _ = spectrum(column, depth, axis, PERIODS[PERIODS >= 4 * column.motion(f"input_a{axis}")[1]])
+        axes.plot(periods, absolute, color=shade, linewidth=0.7, label=f"{depth:.3g} m")
 
 
 def finish_spectra(panels, damping, highest_frequency):
@@ -102,7 +112,7 @@ def finish_spectra(panels, damping, highest_frequency):
         axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         axes.set_xticks([], minor=True)
         axes.set_xlabel("Period $T$ (s)")
-    panels[0, 0].set_ylabel(f"Spectral acceleration $S_a$ (m/s$^2$)\n{100 * damping:g} % damping")
+    panels[0, 0].set_ylabel(f"Absolute acceleration SA (m/s$^2$)\n{100 * damping:g} % damping")
     panels[1, 0].set_ylabel("Surface / input")
     panels[0, 0].legend(loc="best")
 
@@ -142,7 +152,7 @@ def draw_transfer(column, axes, axis):
     f, ratio, strong = transfer_function(surface, base, dt, f_max)
     if strong.any():
         f_max = min(f_max, 1.05 * f[strong][-1])
-    shown = np.where(strong, ratio, np.nan)
+    shown, centres = np.where(strong, ratio, np.nan), np.geomspace(max(0.1, 4 * f[0]), f_max, 600)
     if layer:
         fine = np.linspace(f_max / 4000, f_max, 4000)
         axes.plot(f, shown, color=COLOURS[axis], linewidth=2.2, alpha=0.75, label="computed")
@@ -151,14 +161,16 @@ def draw_transfer(column, axes, axis):
         report_difference(f, ratio, exact_transfer(f, layer, column.base, **column.damping), strong, axis, column)
         top = 1.12 * np.nanmax(shown)
     else:
-        centres = np.geomspace(max(0.1, 4 * f[0]), f_max, 600)
         smooth = smoothed_transfer(surface, base, dt, centres)
         axes.plot(f, shown, color=GREY, linewidth=0.6, alpha=0.7, label="every frequency")
         axes.plot(centres, smooth, color=COLOURS[axis], linewidth=1.5, label="smoothed")
         top = 1.35 * np.nanmax(smooth)
+    if column.base and column.has(f"base_a{axis}"):
+        axes.plot(centres, transfer(column, axis, "within", centres)[1], color=BLACK, linewidth=0.7,
+                  label="over the motion within")
     axes.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
     axes.set(xlim=(0, f_max), ylim=(0, top))
-    axes.legend(loc="lower right", bbox_to_anchor=(0.85, 1.0), ncols=2, borderaxespad=0.2)
+    axes.legend(loc="lower right", bbox_to_anchor=(0.85, 1.0), ncols=3, borderaxespad=0.2)
 
 
 def broad(column, axis):
@@ -170,8 +182,9 @@ def broad(column, axis):
 
 @draws("fig_transfer", {"one elastic layer": "next to its exact curve, from which the largest difference is printed",
                         "other soil": "smoothed, too (Konno and Ohmachi 1998, b = 80)"})
-def transfer(column):
-    """Fourier amplitudes, surface over input."""
+def transfer_functions(column):
+    """Fourier amplitudes, surface over input (dashed: 1), which is the outcrop motion of the rock or, above a rigid
+    base, the motion within; above rock also surface over the motion within, at the base."""
     if column.consolidation or len(column.time) < 8:
         return None
     axes_moving = [axis for axis in column.horizontal if column.has(f"surface_a{axis}") and broad(column, axis)]

@@ -1,40 +1,73 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figure of the largest values of a column over the depth: acceleration, velocity, displacement, shear strain."""
+"""Figures of the largest values of a column over the depth, and of its resistance to liquefaction."""
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .column_box import is_box
-from .column_soil import depth_axis
-from .common import BLACK, letters, plt
+from .column_soil import MIN_RU, depth_axis
+from .common import BLACK, BLUE, RED, letters, plt
 from .drawing import draws
+from .site_response import resistance
 
-SPECS = (("peak_acceleration", "node_depth", 1, "acceleration", "m/s$^2$"),
-         ("peak_velocity", "node_depth", 1, "velocity", "m/s"),
-         ("peak_displacement", "node_depth", 1, "displacement", "m"),
-         ("peak_gamma", "depth", 100, r"shear strain $\gamma$", "%"))
+# column of profile.csv, factor, label, unit, whether it jumps between layers, and from which value on it is drawn
+SPECS = (("PGA", 1, "PGA", "m/s$^2$", False, 0),
+         ("gamma_max", 100, r"$\gamma_\mathrm{max}$", "%", True, 0),
+         ("CSR", 1, r"CSR = 0.65 $\tau_\mathrm{max}/\sigma_{v0}^\prime$", "", True, 0),
+         ("ru_max", 1, "Largest $r_u$", "", True, MIN_RU),
+         ("PGD", 100, "Displacement", "cm", False, 0))
+
+
+def row_of(n):
+    """Panels over the depth side by side, and their figure."""
+    figure, panels = plt.subplots(1, n, figsize=(1.9 * n + 0.4, 4.0), sharey=True, squeeze=False, layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.08)
+    letters(panels)
+    panels[0, 0].set_ylabel("Depth (m)")
+    return figure, panels[0]
 
 
 @draws("fig_peaks")
 def peaks(column):
-    """Largest horizontal acceleration, velocity and displacement and largest shear strain of all steps over the depth;
-    a dot marks the largest of each, whose value and depth are above it."""
-    specs = [spec for spec in SPECS if column.profiles and {spec[0], spec[1]} <= column.profiles.keys()
-             and column.profiles[spec[0]].any()]
+    """Largest values of all steps over the depth: horizontal acceleration, shear strain, cyclic stress ratio, r_u,
+    horizontal displacement (against a rigid base); a dot marks the largest of each, whose value and depth are above it;
+    dotted: boundaries between layers. profile.csv has them, with velocity, shear stress and settlement."""
+    table = column.peak_profile
+    specs = [spec for spec in SPECS if spec[0] in table and np.nanmax(np.nan_to_num(table[spec[0]])) > spec[-1]]
     if not column.shaken or is_box(column) or not specs:
         return None
-    figure, panels = plt.subplots(1, len(specs), figsize=(2.3 * len(specs), 4.0), sharey=True, squeeze=False,
-                                  layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.1)
-    letters(panels)
-    for axes, (name, over, factor, word, unit) in zip(panels[0], specs):
-        values, depth = factor * column.profiles[name], column.profiles[over]
+    figure, panels = row_of(len(specs))
+    for axes, (name, factor, label, unit, jumps, _) in zip(panels, specs):
+        known = np.isfinite(table[name])
+        values, depth = factor * table[name][known], table["depth"][known]
+        z, curve = column.broken(depth, values) if jumps else (depth, values)
         at = int(np.argmax(values))
-        axes.plot(values, depth, color=BLACK, linewidth=1.2)
+        axes.plot(curve, z, color=BLACK, linewidth=1.2)
         axes.plot(values[at], depth[at], "o", color=BLACK, markersize=3.5, clip_on=False, zorder=5)
         axes.set_title(f"{values[at]:.3g} {unit}\nat {depth[at]:.3g} m", loc="right", fontsize=8.5, pad=5)
-        against = "\nagainst the base" if column.base is None and name in ("peak_velocity", "peak_displacement") else ""
-        axes.set(xlabel=f"Largest {word} ({unit}){against}", xlim=(0, None))
+        axes.set(xlabel=label + (f" ({unit})" if unit else ""), xlim=(0, None))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         depth_axis(column, axes, depth)
-    panels[0, 0].set_ylabel("Depth (m)")
+    return figure
+
+
+@draws("fig_liquefaction")
+def liquefaction(column):
+    """Cyclic stress ratio CSR against the cyclic resistance ratio CRR of the layers that have one, and the factor of
+    safety CRR/CSR, over the depth; dashed: a factor of 1, dotted: boundaries between layers."""
+    found = resistance(column)
+    if found is None or not np.isfinite(found[3]).any():
+        return None
+    depth, csr, crr, safety = found
+    figure, (ratios, factors) = row_of(2)
+    for values, label, style in ((csr, "CSR", {"color": BLACK}), (crr, "CRR", {"color": BLUE, "linewidth": 1.6})):
+        z, curve = column.broken(depth, values)
+        ratios.plot(curve, z, label=label, **style)
+    ratios.set(xlabel="Cyclic stress ratio", xlim=(0, None))
+    ratios.legend()
+    z, curve = column.broken(depth, safety)
+    factors.plot(curve, z, color=BLACK)
+    factors.axvline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
+    factors.set(xlabel="Factor of safety CRR/CSR", xlim=(0, min(3, 1.1 * np.nanmax(np.append(safety, 1)))))
+    for axes in (ratios, factors):
+        depth_axis(column, axes, depth)
     return figure

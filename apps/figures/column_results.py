@@ -46,6 +46,12 @@ def table_if_there(path, otherwise):
         return {}
 
 
+def broken(boundaries, depth, values):
+    """Both with not-a-number between points of two layers, so that no line joins them."""
+    cuts = np.flatnonzero(np.diff(np.searchsorted(boundaries, depth))) + 1
+    return np.insert(depth, cuts, np.nan), np.insert(np.asarray(values, dtype=float), cuts, np.nan)
+
+
 class Grains:
     """What the packings of a column left: `points` of its grain_history with their prefix, `profiles` by name."""
 
@@ -85,6 +91,7 @@ class Column:
         self.grains = Grains(folder)
         self._read_scene()
         summary = self._read(folder / "summary.json")
+        self.summary = summary
         self.title = summary.get("title") or self.scene.get("title") or folder.resolve().name
         self.moving = [axis for axis in "xyz" if self.peak(f"input_a{axis}") > 0]
         self.horizontal = [axis for axis in "xy" if axis in self.moving]
@@ -94,6 +101,9 @@ class Column:
         prefixes = sorted({match[1] for match in map(re.compile(r"(d\d+)_").match, self.columns) if match},
                           key=lambda prefix: int(prefix[1:]))
         self.points = [(self._depth(prefix, k, summary), prefix) for k, prefix in enumerate(prefixes)]
+        self.motion_depths = [float(self[f"{prefix}_node_depth"][0]) if self.has(f"{prefix}_node_depth") else None
+                              for _, prefix in self.points]
+        self.peak_profile = table_if_there(folder / "profile.csv", "figures of largest values are left out")
         self.spectra = table_if_there(folder / "spectra.csv", "response spectra are those of the rows of the history")
 
     @property
@@ -184,6 +194,23 @@ class Column:
     def boundaries(self):
         """Depths between layers, m."""
         return list(np.cumsum([layer["height"] for layer in self.layers])[:-1])
+
+    def layer_at(self, depth):
+        """The number of the layer at each depth."""
+        return np.searchsorted(self.boundaries(), depth)
+
+    def shares(self, depth):
+        """Top and bottom of what each of the points stands for, from the surface down, m: half the way to its
+        neighbours in the same layer, and to the boundaries of its layer. Layers without points are left out."""
+        layer, ends = self.layer_at(depth), [0.0, *self.boundaries(), self.bottom(depth)]
+        apart = np.diff(layer) > 0
+        middle = 0.5 * (depth[1:] + depth[:-1])
+        top = np.concatenate([[ends[layer[0]]], np.where(apart, np.take(ends, layer[1:]), middle)])
+        bottom = np.concatenate([np.where(apart, np.take(ends, layer[:-1] + 1), middle), [ends[layer[-1] + 1]]])
+        return top, bottom
+
+    def broken(self, depth, values):
+        return broken(self.boundaries(), depth, values)
 
     def capped_boundaries(self):
         """Of those, the ones below the water table and layers that are less permeable than the layer beneath."""

@@ -17,7 +17,7 @@ def is_slope(column):
 @draws("fig_spreading")
 def spreading(column):
     """Displacement of the surface in time; at the end displacement and shear strain over the depth, next to static
-    shear stress and normal effective stress of the start."""
+    shear stress and normal effective stress of the start; dotted: boundaries between layers."""
     if not is_slope(column):
         return None
     figure, panels = plt.subplot_mosaic([["time", "time", "time"], ["moved", "strain", "stress"]],
@@ -33,7 +33,8 @@ def spreading(column):
     depth = column.profiles["depth"]
     panels["moved"].plot(column.profiles["end_displacement"], column.profiles["node_depth"], color=BLUE)
     panels["moved"].set(xlabel="Against the base,\nat the end (m)", ylabel="Depth (m)")
-    panels["strain"].plot(100 * column.profiles["end_gamma_xz"], depth, color=BLACK)
+    z, gamma = column.broken(depth, 100 * column.profiles["end_gamma_xz"])
+    panels["strain"].plot(gamma, z, color=BLACK)
     panels["strain"].set_xlabel(r"$\gamma_{xz}$ at the end (%)")
     panels["stress"].plot(column.profiles["tau_0"] / 1e3, depth, color=RED, label=r"$\tau_0$")
     panels["stress"].plot(column.profiles["sigma_v0"] / 1e3, depth, color=GREY, label=r"$\sigma_{n0}^\prime$")

@@ -11,8 +11,10 @@ from .drawing import draws
 TIMES = ListedColormap(plt.get_cmap("viridis_r")(np.linspace(0.06, 1, 256)))  # of time: pale early, dark late
 EARLY = 0.25  # of the motion: half of its squared acceleration by then is early
 SHARES = (0.02, 0.1, 0.3, 0.5, 0.7, 0.9)  # of the squared acceleration: when profiles are drawn
+MOST_DEPTHS = 6  # output depths on a page
 MIN_RU = 1e-3  # below it water plays no part
 LIQUEFIED_RU = 0.95
+MIN_CHANGE = 1e-3  # of an effective stress, for a stress path
 MIN_SHARE = 0.1  # of the largest shear stress: a direction with less is not drawn (grains always stray a little)
 
 
@@ -49,12 +51,12 @@ def time_norm(column):
     return PowerNorm(gamma, column.time[0], column.time[0] + end)
 
 
-def time_bar(figure, panels, norm, last, aspect=40):
+def time_bar(figure, panels, norm, last, aspect=40, unit="s"):
     """The bar that explains the colours of time."""
     bar = figure.colorbar(plt.cm.ScalarMappable(norm, TIMES), ax=panels, aspect=aspect, pad=0.015,
                           extend="max" if norm.vmax < 0.98 * last else "neither", extendfrac=0.03)
-    later = f"; one colour after {norm.vmax:.3g} s" if norm.vmax < 0.98 * last else ""
-    bar.set_label(f"Time (s){later}")
+    later = f"; one colour after {norm.vmax:.3g} {unit}" if norm.vmax < 0.98 * last else ""
+    bar.set_label(f"Time ({unit}){later}")
 
 
 def resultant(one, other):
@@ -92,7 +94,8 @@ def profiles_in_time(column, specs, table, more, width, **line):
     letters(panels)
     for axes, (values, label, level) in zip(panels[0], specs):
         for row in chosen:
-            axes.plot(values[row], depth, color=TIMES(norm(time[row])), **line)
+            z, curve = column.broken(depth, values[row])
+            axes.plot(curve, z, color=TIMES(norm(time[row])), **line)
         if level is not None:
             axes.axvline(level, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
         axes.set_xlabel(label)
@@ -105,7 +108,7 @@ def profiles_in_time(column, specs, table, more, width, **line):
 @draws("fig_profiles")
 def profiles(column):
     """Largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against the depth at several
-    times."""
+    times; dashed: r_u = 1, dotted: boundaries between layers."""
     if not column.shaken or not column.profiles:
         return None
     gamma = [column.profile(name) for name in ("gamma_xz", "gamma_yz")]
@@ -129,13 +132,15 @@ def profiles(column):
 
 @draws("fig_velocity")
 def velocity(column):
-    """Shear-wave velocity of small strain over the depth at the start, where it varies."""
+    """Shear-wave velocity of small strain at the points over the depth at the start, where it varies; dotted:
+    boundaries between layers."""
     speeds = column.profiles.get("shear_velocity") if column.profiles else None
     if speeds is None or np.ptp(speeds) < 1e-6 * speeds.max():
         return None
     figure, axes = plt.subplots(figsize=(5.2, 4.0), layout="constrained")
     depth = column.profiles["depth"]
-    axes.plot(speeds, depth, color=BLACK, linewidth=1.0, marker=".", markersize=4 if len(depth) < 50 else 0)
+    z, curve = column.broken(depth, speeds)
+    axes.plot(curve, z, color=BLACK, linewidth=1.0, marker=".", markersize=4 if len(depth) < 50 else 0)
     axes.set(xlim=(0, None), xlabel="Shear-wave velocity at the start (m/s)", ylabel="Depth (m)")
     depth_axis(column, axes, depth)
     return figure
@@ -164,14 +169,24 @@ def outline(axes, x, y, inside, **style):
     axes.add_collection(LineCollection(parts, capstyle="projecting", **style))
 
 
+def cells_over_depth(column, depth, values):
+    """Borders of cells around points and values [time x depth] as [depth x time]: what each point stands for, and
+    cells of not-a-number over layers that have no point."""
+    borders, rows = [], []
+    for top, bottom, row in zip(*column.shares(depth), values.T):
+        if borders and top > borders[-1] + 1e-9:
+            borders.append(top)
+            rows.append(np.full(len(row), np.nan))
+        borders += [bottom] if borders else [top, bottom]
+        rows.append(row)
+    return np.array(borders), np.array(rows)
+
+
 def map_over_time(column, axes, values, **style):
     """Colours of a profile over depth and time, whose cells are the points' own share of both.
     @return  the coloured cells, their borders in time and depth, values in the order of the cells"""
     depth, time = column.profiles["depth"], column.profiles["time"]
-    order = np.argsort(depth)
-    bottom = column.bottom(depth)
-    x, y = edges(time, time[0], time[-1]), edges(depth[order], 0, bottom)
-    cells = values[:, order].T
+    x, (y, cells) = edges(time, time[0], time[-1]), cells_over_depth(column, depth, values)
     shade = axes.pcolormesh(x, y, cells, rasterized=True, **style)
     depth_axis(column, axes, depth)
     axes.grid(False)
@@ -181,7 +196,7 @@ def map_over_time(column, axes, values, **style):
 
 @draws("fig_ru_map")
 def ru_map(column):
-    """r_u over depth and time, below the input."""
+    """r_u over depth and time, below the input; dotted: boundaries between layers."""
     ru = pore_pressure_ratio(column)
     if column.consolidation or ru is None or len(column.profiles["time"]) < 2:
         return None
@@ -219,10 +234,12 @@ def coloured_path(axes, x, y, time, norm):
 
 
 def path_stress(column):
-    """The stress of the paths: p' where the run has it, else sigma'_v."""
+    """The stress of the paths: p' where the run has it, else sigma'_v; none if it does not change."""
     for name, label in (("p", r"$p^\prime$"), ("sigma_v", r"$\sigma_v^\prime$")):
-        if any(column.has(f"{prefix}_{name}") for _, prefix in column.points):
-            return name, label
+        values = [column[f"{prefix}_{name}"] for _, prefix in column.points if column.has(f"{prefix}_{name}")]
+        if values:
+            moves = any(np.ptp(of_depth) > MIN_CHANGE * np.abs(of_depth).max() for of_depth in values)
+            return (name, label) if moves else (None, None)
     return None, None
 
 
@@ -230,19 +247,30 @@ def point_label(depth, prefix):
     return f"{depth:.3g} m" if depth is not None else prefix
 
 
+def paged(points, draw):
+    """A figure, or pages of one, for at most MOST_DEPTHS of the points each."""
+    pages = [draw(points[k:k + MOST_DEPTHS]) for k in range(0, len(points), MOST_DEPTHS)]
+    return pages if len(pages) > 1 else pages[0]
+
+
 @draws("fig_loops")
 def loops(column):
-    """Shear loops and stress paths at the output depths, coloured by time."""
+    """Shear loops and, where the effective stress changes, stress paths at the output depths, coloured by time; dot:
+    start."""
     axes_moving = moving_shears(column) if column.shaken else []
     if not axes_moving or not column.points:
         return None
+    return paged(column.points, lambda points: draw_loops(column, points, axes_moving))
+
+
+def draw_loops(column, points, axes_moving):
     stress, stress_label = path_stress(column)
     specs = [("gamma", axis) for axis in axes_moving] + [("path", axis) for axis in axes_moving if stress]
-    n, m = len(column.points), len(specs)
+    n, m = len(points), len(specs)
     figure, panels = plt.subplots(n, m, figsize=(7.2 if m <= 2 else 2.7 * m, 1.8 * n + 0.9), squeeze=False,
                                   layout="constrained")
     norm = time_norm(column)
-    for row, (depth, prefix) in zip(panels, column.points):
+    for row, (depth, prefix) in zip(panels, points):
         for axes, (kind, axis) in zip(row, specs):
             name = f"{prefix}_gamma_{axis}z" if kind == "gamma" else f"{prefix}_{stress}"
             if not (column.has(name) and column.has(f"{prefix}_tau_{axis}z")):
@@ -272,19 +300,22 @@ def sinks(column):
     return column.peak("settlement") > 1e-6
 
 
-@draws("fig_histories", {"wet": "r_u at the output depths and its largest value anywhere", "sinking": "settlement"})
+@draws("fig_histories", {"wet": "r_u at the output depths and its largest value anywhere; dashed, red: r_u = 1",
+                         "sinking": "settlement of the surface"})
 def histories(column):
-    if not column.shaken:
-        return None
     wet, sinking = is_wet(column), sinks(column)
-    if not wet and not sinking:
+    if not column.shaken or not (wet or sinking):
         return None
+    return paged(column.points or [(None, "")], lambda points: draw_histories(column, points, wet, sinking))
+
+
+def draw_histories(column, points, wet, sinking):
     figure, panels = plt.subplots(wet + sinking, 1, figsize=(7.2, 2.5 * (wet + sinking) + 0.5), sharex=True,
                                   squeeze=False, layout="constrained")
     panels = list(panels[:, 0])
     letters(panels if len(panels) > 1 else [])
     if wet:
-        draw_ru(column, panels[0])
+        draw_ru(column, panels[0], points)
     if sinking:
         panels[-1].plot(column.time, 1e3 * column["settlement"], color=BLACK)
         panels[-1].invert_yaxis()
@@ -293,12 +324,12 @@ def histories(column):
     return figure
 
 
-def draw_ru(column, axes):
+def draw_ru(column, axes, points):
     if column.has("max_ru"):
         axes.plot(column.time, column["max_ru"], color=BLACK, linewidth=0.9, linestyle=(0, (3, 1.5)),
                   zorder=3, label="anywhere")
-    shades = plt.get_cmap("plasma")(np.linspace(0.0, 0.85, max(1, len(column.points))))
-    for (depth, prefix), shade in zip(column.points, shades):
+    shades = plt.get_cmap("plasma")(np.linspace(0.0, 0.85, len(points)))
+    for (depth, prefix), shade in zip(points, shades):
         if column.has(f"{prefix}_ru"):
             axes.plot(column.time, column[f"{prefix}_ru"], color=shade, label=point_label(depth, prefix))
     axes.axhline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)

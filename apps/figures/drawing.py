@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a module says of a program's figures, and how they are drawn into a folder."""
 import dataclasses
+import re
 import textwrap
 import typing
 
@@ -9,12 +10,18 @@ from .files import replacing
 
 
 def draws(name, parts=None):
-    """Of a function draw(results) -> figure, or None if there is nothing to draw: the name of the figure. Its caption
-    is the docstring of the function, with the parts {kind of results: text} that fit."""
+    """Of a function draw(results) -> figure, pages of it, or None if there is nothing to draw: the name of the figure;
+    pages from the second on have their number behind it. Its caption is the docstring of the function, with the
+    parts {kind of results: text} that fit."""
     def mark(draw):
         draw.name, draw.parts = name, parts or {}
         return draw
     return mark
+
+
+def pages_of(drawn):
+    """The figures that a function has drawn."""
+    return drawn if isinstance(drawn, list) else [] if drawn is None else [drawn]
 
 
 @dataclasses.dataclass
@@ -38,7 +45,7 @@ class Drawing:
 
     def caption(self, name, kinds):
         """As a sentence, with the parts that fit results of these kinds."""
-        draw = self.figures[name]
+        draw = self.figures[re.sub(r"_\d+$", "", name)]
         own = " ".join((draw.__doc__ or "").split()).removesuffix(".")
         text = "; ".join(filter(None, (own, *(part for kind, part in draw.parts.items() if kind in kinds))))
         return f"{text if text[1] == '_' else text[0].upper() + text[1:]}."
@@ -59,13 +66,14 @@ class Drawing:
         out.mkdir(parents=True, exist_ok=True)
         use_style()
         for name, draw in self.figures.items():
-            figure = draw(results)
-            if figure is None:
+            pages = pages_of(draw(results))
+            if not pages:
                 self.undrawn(name, results)
-                continue
-            self._save(name, figure, results, out)
-            each(name, figure)
-            plt.close(figure)
+            for number, figure in enumerate(pages, 1):
+                page = name if number == 1 else f"{name}_{number}"
+                self._save(page, figure, results, out)
+                each(page, figure)
+                plt.close(figure)
 
     @staticmethod
     def _save(name, figure, results, out):

@@ -14,8 +14,8 @@ from .column_box import box_maps, box_surface
 from .column_consolidation import isochrones, settlement
 from .column_expansion import expansion
 from .column_grains import grains_history, grains_map, grains_profiles
-from .column_motion import motions, spectra, transfer
-from .column_peaks import peaks
+from .column_motion import motions, spectra, transfer_functions
+from .column_peaks import liquefaction, peaks
 from .column_picture import picture
 from .column_slope import spreading
 from .column_soil import histories, is_wet, loops, profiles, ru_map, sinks, velocity
@@ -28,6 +28,6 @@ def kinds(column):
     return soil | {word for word, fits in (("wet", is_wet(column)), ("sinking", sinks(column))) if fits}
 
 
-DRAWING = Drawing(Column, [motions, spectra, transfer, profiles, peaks, velocity, ru_map, histories, spreading,
-                           box_maps, box_surface, plate, loops, expansion, isochrones, settlement, grains_profiles,
-                           grains_map, grains_history, picture], kinds=kinds)
+DRAWING = Drawing(Column, [motions, spectra, transfer_functions, peaks, liquefaction, profiles, velocity, ru_map,
+                           histories, spreading, box_maps, box_surface, plate, loops, expansion, isochrones,
+                           settlement, grains_profiles, grains_map, grains_history, picture], kinds=kinds)

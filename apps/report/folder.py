@@ -8,10 +8,10 @@ from figures.files import Damaged, read_parsed
 # The file with the numbers of a program's summary; it is written last, so a run that has it is finished. A biaxial
 # block is a run of soil_column.
 NUMBERS = {"element_test": "summary.json", "soil_column": "summary.json", "biaxial": "summary.json",
-           "rve_replay": "summary.json", "resistance": "resistance.json",
+           "rve_replay": "summary.json", "resistance": "resistance.json", "soil_test": "soil_test.json",
            "calibrate": "calibrate.json", "micromechanics": "micromechanics.json",
            "column_ensemble": "ensemble.json"}
-TOLD_BY_FILE = ("micromechanics", "resistance", "calibrate", "column_ensemble")  # whatever was called
+TOLD_BY_FILE = ("micromechanics", "resistance", "soil_test", "calibrate", "column_ensemble")  # whatever was called
 
 IN_PYTHON = {"isostat.run()": "element_test", "isostat.column.run()": "soil_column"}  # whose files they leave
 

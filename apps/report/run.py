@@ -7,12 +7,12 @@ import shlex
 
 from figures.common import BadInput, note
 
-from . import citation, html, verdicts
+from . import citation, column_tables, html, verdicts
 from .folder import IN_PYTHON, NoResults, Results
 from .quantities import converted, named, shown
 
 REPORT = "report.html"
-KEPT = ("resistance", "calibrate", "column_ensemble")  # the same command continues with what is missing
+KEPT = ("resistance", "soil_test", "calibrate", "column_ensemble")  # the same command continues with what is missing
 RESUMED = ("element_test", "soil_column", "biaxial")  # --resume continues from a checkpoint
 
 
@@ -90,6 +90,7 @@ class Page:
         sections = [
             html.section("How it went", f'<ul class="verdicts">\n{items}\n</ul>' if items else "", name="verdicts"),
             html.section("Summary", *summary_parts(r), name="summary"),
+            *(column_tables.sections(drawn) if r.program == "soil_column" and drawn else []),
             html.section("Figures", html.figures(self.figures), missing, name="figures"),
             html.section("Going on, and repeating it", *resume_parts(r), name="resume"),
             html.section("Scene", html.text_block(r.scene_text, "scene") if r.scene_text else "", name="scene"),

@@ -83,6 +83,14 @@ def resistance(results, campaign):
                             f"cycles: {fit['CSR_15']:.4f}.")]
 
 
+def soil_test(results, _test):
+    s = results.numbers
+    if s["CRR_15"] is None:
+        return [Verdict("Does not liquefy:", "shear builds up no pore pressure that would.")]
+    target = f", {100 * (s['CRR_15'] / s['CRR_of_scene'] - 1):+.1f} % of that of the scene" if s["CRR_of_scene"] else ""
+    return [Verdict("Resistance:", f"CRR = {s['CRR_15']:.3f} at 15 cycles{target}; exponent b = {s['b']:.2f}.")]
+
+
 def calibrate(results, _calibration):
     s = results.numbers
     found = [Verdict("Ended", f"because {s['ending']}."),
@@ -122,7 +130,7 @@ def column_ensemble(results, _ensemble):
 
 
 OF_PROGRAM = {judge.__name__: judge for judge in (element_test, soil_column, biaxial, rve_replay,
-                                                  resistance, calibrate, micromechanics, column_ensemble)}
+                                                  resistance, soil_test, calibrate, micromechanics, column_ensemble)}
 
 
 def of_run(results, drawn):

@@ -70,7 +70,7 @@ protected:
         box_motion_->settled = this->settled_;
       }
     this->write([&] {
-      files_.finish(follower_.peaks, spreading_);
+      files_.finish(follower_.peaks, run_.displacement(), spreading_);
       finish_files();
     });
   }
@@ -88,6 +88,7 @@ protected:
       summary.point_depths.push_back(point.depth);
     follower_.gather();
     summary.peaks = follower_.peaks;
+    summary.motion_depths = files_.history().motion_depths();
     if (files_.line())
       summary.node_depths = files_.line()->node_depths;
     summary.warnings = this->warnings_;

@@ -15,6 +15,7 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
 {
   DynamicsSettings settings;
   settings.time_step = scene.analysis.time_step.value_or(0);
+  settings.multiple = scene.output.history_interval;
   settings.safety = scene.analysis.safety;
   settings.mass_damping = scene.analysis.mass_damping;
   settings.viscosity = scene.analysis.viscosity;

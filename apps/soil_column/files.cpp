@@ -3,6 +3,8 @@
 
 #include "base/files/replace_file.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -32,6 +34,43 @@ SeriesLayout layout_of(const ColumnLine &line, const std::vector<double> &vertic
     if (moves)
       layout.series.push_back({fmt::format("node_velocity_{}", axis), "m/s", line.nodes.size()});
   return layout;
+}
+
+/// Linear between nodes.   @param depths  of `values`, rising
+double at_depth(const std::vector<double> &depths, const std::vector<double> &values, double depth)
+{
+  const auto above = std::ranges::upper_bound(depths, depth);
+  const auto k = static_cast<std::size_t>(std::clamp(above - depths.begin(), 1L, std::ssize(depths) - 1));
+  return std::lerp(values[k - 1], values[k], (depth - depths[k - 1]) / (depths[k] - depths[k - 1]));
+}
+
+/// profile.csv: the largest values of all steps at the points, from the surface down, with what nodes have at these
+/// depths. Surface and base are nodes without strain and stress.   CSR = 0.65 tau_max/sigma'_v0 (Seed & Idriss 1971,
+/// doi:10.1061/JSFEAQ.0001662)   @param settlement  of the nodes at the end against the base, m
+void write_profile(const fs::path &path, const ColumnLine &line, const ColumnPeaks &peaks,
+                   const std::vector<double> &settlement, const std::vector<double> &vertical_stress)
+{
+  constexpr double mean_share = 0.65;
+  std::string text = "depth (m),PGA (m/s2),PGV (m/s),PGD (m),settlement (m),gamma_max (-),tau_max (Pa),sigma_v0 (Pa),"
+                     "tau_ratio (-),CSR (-),ru_max (-)\n";
+  const auto add_nodes = [&](double depth) {
+    text += fmt::format("{:.10g}", depth);
+    for (const std::vector<double> *values :
+         {&peaks.line_acceleration, &peaks.line_velocity, &peaks.line_displacement, &settlement})
+      text += fmt::format(",{:.10g}", at_depth(line.node_depths, *values, depth));
+  };
+  add_nodes(line.node_depths.front());
+  text += ",,,,,,\n";
+  for (std::size_t k = 0; k < line.points.size(); ++k)
+    {
+      const double tau = peaks.line_tau[k], initial = vertical_stress[line.points[k]];
+      add_nodes(line.point_depths[k]);
+      text += fmt::format(",{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n", peaks.line_gamma[k], tau, initial,
+                          tau / initial, mean_share * tau / initial, peaks.line_ru[k]);
+    }
+  add_nodes(line.node_depths.back());
+  text += ",,,,,,\n";
+  write_replacing(path, text);
 }
 } // namespace
 
@@ -115,7 +154,8 @@ void ColumnFiles::save(ColumnCheckpoint &checkpoint, const ColumnPeaks &peaks)
   checkpoint.numbers["paraview"] = pvd_ ? static_cast<double>(pvd_->n_entries()) : 0;
 }
 
-void ColumnFiles::finish(const ColumnPeaks &peaks, const std::optional<Spreading> &spreading)
+void ColumnFiles::finish(const ColumnPeaks &peaks, const Vector &displacement,
+                         const std::optional<Spreading> &spreading)
 {
   flush();
   if (!profiles_)
@@ -125,6 +165,16 @@ void ColumnFiles::finish(const ColumnPeaks &peaks, const std::optional<Spreading
   profiles_->add("peak_acceleration", peaks.line_acceleration, "m/s2");
   profiles_->add("peak_velocity", peaks.line_velocity, "m/s");
   profiles_->add("peak_displacement", peaks.line_displacement, "m");
+  if (moves_)
+    {
+      std::vector<double> settlement;
+      const double of_base = displacement.local_element(line_->nodes.back() + 2);
+      for (const unsigned dof : line_->nodes)
+        settlement.push_back(of_base - displacement.local_element(dof + 2));
+      profiles_->add("peak_tau", peaks.line_tau, "Pa");
+      profiles_->add("end_settlement", settlement, "m");
+      write_profile(folder_ / "profile.csv", *line_, peaks, settlement, history_.vertical_stress());
+    }
   if (!spreading)
     return;
   profiles_->add("tau_0", spreading->line_shear, "Pa");

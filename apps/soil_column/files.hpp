@@ -35,8 +35,9 @@ public:
   /// Brings all files up to date; then the checkpoint gets what belongs to them, and the peaks.
   void save(ColumnCheckpoint &checkpoint, const ColumnPeaks &peaks);
   void flush();
-  /// Adds the largest values to the profiles, and the end state of a slope.   @pre the last call
-  void finish(const ColumnPeaks &peaks, const std::optional<Spreading> &spreading);
+  /// Adds the largest values to the profiles, of what was shaken settlement and profile.csv, and the end state of a
+  /// slope.   @param displacement  at the end   @pre the last call
+  void finish(const ColumnPeaks &peaks, const Vector &displacement, const std::optional<Spreading> &spreading);
 
   const ColumnLine *line() const { return line_ ? &*line_ : nullptr; } ///< null: a distributed mesh
   ColumnHistory &history() { return history_; }

@@ -20,6 +20,18 @@ std::array<long, 3> node_at(const FiniteElementSpace &space, const Place &place)
   return {space.find_dof(place, 0), space.find_dof(place, 1), space.find_dof(place, 2)};
 }
 
+/// Of the nodes of the vertical of the histories those nearest to the scene's depths.
+std::vector<double> nearest_nodes(const ColumnScene &scene, const MeshSpec &mesh)
+{
+  std::vector<double> nearest;
+  if (scene.analysis.kind != AnalysisKind::dynamic)
+    return nearest;
+  const std::vector<double> nodes = node_depths(mesh);
+  for (const double depth : scene.output.depths)
+    nearest.push_back(*std::ranges::min_element(nodes, {}, [&](double z) { return std::abs(z - depth); }));
+  return nearest;
+}
+
 /// The node's values, 0 on ranks that do not have it.
 void append(const std::vector<double> &values, const std::array<long, 3> &node, std::vector<double> &row)
 {
@@ -32,8 +44,11 @@ ColumnHistory::ColumnHistory(const ColumnScene &scene, const FiniteElementSpace 
                              const std::array<Motion, 3> &motions, std::size_t stride)
     : space_(space), motions_(motions), rigid_(!scene.base.compliant()),
       base_(node_at(space, {space.mesh().line[0], space.mesh().line[1], 0})),
-      surface_(node_at(space, space.mesh().on_line(0))), expansions_(scene, space), filter_(9, stride)
+      surface_(node_at(space, space.mesh().on_line(0))), motion_depths_(nearest_nodes(scene, space.mesh())),
+      expansions_(scene, space), filter_(9 + 3 * motion_depths_.size(), stride), sample_(9 + 3 * motion_depths_.size())
 {
+  for (const double depth : motion_depths_)
+    motion_nodes_.push_back(node_at(space, space.mesh().on_line(depth)));
   for (unsigned axis = 1; axis < space.dimension; ++axis)
     area_ *= scene.mesh.width;
   for (double depth : scene.output.depths)
@@ -69,6 +84,12 @@ std::vector<RecordColumn> ColumnHistory::columns() const
     }
   for (std::size_t k = 0; k < expansions_.all().size(); ++k)
     columns.push_back({fmt::format("expansion_{}", k), "m"});
+  for (std::size_t k = 0; k < motion_depths_.size(); ++k)
+    {
+      columns.push_back({fmt::format("d{}_node_depth", k), "m"});
+      for (const char axis : {'x', 'y', 'z'})
+        columns.push_back({fmt::format("d{}_a{}", k, axis), "m/s2"});
+    }
   return columns;
 }
 
@@ -142,30 +163,45 @@ std::vector<double> ColumnHistory::row(const ColumnInstant &instant)
     state.max_energy = std::max(state.max_energy, std::abs(tail[k]));
   const std::vector<double> expansions = expansions_.follow(instant);
   row.insert(row.end(), expansions.begin(), expansions.end());
+  append_motions(instant, row);
   return row;
+}
+
+void ColumnHistory::append_motions(const ColumnInstant &instant, std::vector<double> &row) const
+{
+  std::vector<double> motions;
+  for (const Trio &node : motion_nodes_)
+    append(instant.acceleration, node, motions);
+  space_.sum_over_ranks(motions);
+  for (std::size_t k = 0; k < motion_nodes_.size(); ++k)
+    {
+      row.push_back(motion_depths_[k]);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        row.push_back(motions[3 * k + axis] + (rigid_ ? row[input_at + axis] : 0));
+    }
 }
 
 void ColumnHistory::follow(const Dynamics &run)
 {
   if (!filter_.filters())
     return;
-  std::array<double, 9> sample = {};
+  const auto put = [&](std::size_t at, const Trio &node) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sample_[at + axis] = node[axis] < 0 ? 0 : run.acceleration(static_cast<unsigned>(node[axis]));
+  };
+  std::fill_n(sample_.begin(), 3, 0.0);
+  put(3, base_);
+  put(6, surface_);
+  for (std::size_t k = 0; k < motion_nodes_.size(); ++k)
+    put(9 + 3 * k, motion_nodes_[k]);
+  space_.sum_over_ranks(sample_);
   for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      sample[3 + axis] = base_[axis] < 0 ? 0 : run.acceleration(static_cast<unsigned>(base_[axis]));
-      sample[6 + axis] = surface_[axis] < 0 ? 0 : run.acceleration(static_cast<unsigned>(surface_[axis]));
+      sample_[axis] = motions_[axis].acceleration(run.time() - run.time_step());
+      for (std::size_t at = 3 + axis; rigid_ && at < sample_.size(); at += 3) // unknowns count from the moving base
+        sample_[at] += sample_[axis];
     }
-  space_.sum_over_ranks(sample);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      sample[axis] = motions_[axis].acceleration(run.time() - run.time_step());
-      if (rigid_) // unknowns count from the moving base
-        {
-          sample[3 + axis] += sample[axis];
-          sample[6 + axis] += sample[axis];
-        }
-    }
-  filter_.follow(sample);
+  filter_.follow(sample_);
 }
 
 std::optional<std::vector<double>> ColumnHistory::take(bool at_the_end)
@@ -176,7 +212,11 @@ std::optional<std::vector<double>> ColumnHistory::take(bool at_the_end)
   waiting_.pop_front();
   if (!filter_.filters())
     return row;
-  std::ranges::copy(filter_.at(static_cast<std::uint64_t>(row[0])), row.begin() + input_at);
+  const std::vector<double> filtered = filter_.at(static_cast<std::uint64_t>(row[0]));
+  std::copy_n(filtered.begin(), 9, row.begin() + input_at);
+  const auto motions = row.end() - static_cast<std::ptrdiff_t>(4 * motion_nodes_.size());
+  for (std::ptrdiff_t k = 0; k < std::ssize(motion_nodes_); ++k)
+    std::copy_n(filtered.begin() + 9 + 3 * k, 3, motions + 4 * k + 1);
   return row;
 }
 

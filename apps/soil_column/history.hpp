@@ -55,6 +55,7 @@ public:
 
   const std::vector<double> &vertical_stress() const { return vertical_stress_; } ///< sigma'_v0 of every point, Pa
   const std::vector<PointAtDepth> &points() const { return points_; }             ///< of the scene's depths
+  const std::vector<double> &motion_depths() const { return motion_depths_; }     ///< of the nodes nearest to them, m
   const std::vector<CapExpansion> &expansions() const { return expansions_.all(); }
   ColumnState state; ///< of the last row
 
@@ -71,6 +72,7 @@ private:
   }
   Extremes extremes(const ColumnInstant &instant) const;
   void append_points(const ColumnInstant &instant, std::vector<double> &row) const;
+  void append_motions(const ColumnInstant &instant, std::vector<double> &row) const;
 
   const FiniteElementSpace &space_;
   const std::array<Motion, 3> &motions_;
@@ -78,9 +80,12 @@ private:
   double area_ = 1; ///< of the mesh in plan, m2
   Trio base_, surface_;
   std::vector<PointAtDepth> points_;
+  std::vector<double> motion_depths_; ///< empty unless it is shaken
+  std::vector<Trio> motion_nodes_;
   std::vector<double> vertical_stress_, mean_stress_;
   CapExpansions expansions_;
-  DecimationFilter filter_; ///< of input, base and surface
+  DecimationFilter filter_;    ///< of input, base, surface, and the depths
+  std::vector<double> sample_; ///< of one step, for the filter
   std::deque<std::vector<double>> waiting_;
 };
 } // namespace isostat

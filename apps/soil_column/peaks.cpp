@@ -8,13 +8,26 @@ namespace isostat
 {
 namespace
 {
-double shear(const Gradient &h) { return std::hypot(h[2] + h[6], h[5] + h[7]); }
-
-/// Size of a horizontal vector whose components along x and y are unknowns.
-double horizontal(const Vector &values, long x, long y, double add_x, double add_y)
+/// Raises the largest size so far to that of (x, y). hypot() is slow: not of what is smaller beyond round-off.
+bool raise(double &largest, double x, double y)
 {
-  return std::hypot(values.local_element(static_cast<unsigned>(x)) + add_x,
-                    values.local_element(static_cast<unsigned>(y)) + add_y);
+  constexpr double below = 1 - 1e-14;
+  if (x * x + y * y < below * largest * largest)
+    return false;
+  const double size = std::hypot(x, y);
+  if (!(size > largest))
+    return false;
+  largest = size;
+  return true;
+}
+
+bool raise_shear(double &largest, const Gradient &h) { return raise(largest, h[2] + h[6], h[5] + h[7]); }
+
+/// With a horizontal vector whose components along x and y are unknowns.
+void raise_horizontal(double &largest, const Vector &values, long x, long y, double add_x, double add_y)
+{
+  raise(largest, values.local_element(static_cast<unsigned>(x)) + add_x,
+        values.local_element(static_cast<unsigned>(y)) + add_y);
 }
 } // namespace
 
@@ -51,6 +64,7 @@ PeakFollower::PeakFollower(const FiniteElementSpace &space, const ColumnLine *li
     {
       peaks.line_gamma.assign(line->points.size(), 0.0);
       peaks.line_ru.assign(line->points.size(), 0.0);
+      peaks.line_tau.assign(line->points.size(), 0.0);
       for (std::vector<double> *of_nodes : {&peaks.line_acceleration, &peaks.line_velocity, &peaks.line_displacement})
         of_nodes->assign(line->nodes.size(), 0.0);
     }
@@ -62,11 +76,8 @@ void PeakFollower::follow(const Vector &displacement, const std::vector<double> 
   const auto depth = [&](std::size_t q) { return space_.mesh().depth(space_.position[q]); };
   for (std::size_t q = 0; q < gradients_.size(); ++q)
     {
-      if (const double gamma = shear(gradients_[q]); gamma > peaks.gamma)
-        {
-          peaks.gamma = gamma;
-          peaks.gamma_depth = depth(q);
-        }
+      if (raise_shear(peaks.gamma, gradients_[q]))
+        peaks.gamma_depth = depth(q);
       if (const double ru = pressure[q] / vertical_stress_[q]; ru > peaks.ru)
         {
           peaks.ru = ru;
@@ -78,7 +89,7 @@ void PeakFollower::follow(const Vector &displacement, const std::vector<double> 
     for (std::size_t k = 0; k < line_->points.size(); ++k)
       {
         const std::size_t q = line_->points[k];
-        peaks.line_gamma[k] = std::max(peaks.line_gamma[k], shear(gradients_[q]));
+        raise_shear(peaks.line_gamma[k], gradients_[q]);
         peaks.line_ru[k] = std::max(peaks.line_ru[k], pressure[q] / vertical_stress_[q]);
       }
 }
@@ -94,18 +105,21 @@ void PeakFollower::follow(const Dynamics &run)
   const double frame_x = absolute ? 0 : ax, frame_y = absolute ? 0 : ay;
   peaks.input = std::max(peaks.input, std::hypot(ax, ay));
   if (surface_[0] >= 0 && surface_[1] >= 0)
-    peaks.surface = std::max(peaks.surface, horizontal(run.acceleration(), surface_[0], surface_[1], frame_x, frame_y));
+    raise_horizontal(peaks.surface, run.acceleration(), surface_[0], surface_[1], frame_x, frame_y);
   if (!line_)
     return;
   follow_nodes(run.acceleration(), frame_x, frame_y, peaks.line_acceleration);
   follow_nodes(run.velocity(), 0, 0, peaks.line_velocity);
   follow_nodes(run.displacement(), 0, 0, peaks.line_displacement);
+  const std::span<const Stress> stresses = run.stresses();
+  for (std::size_t k = 0; k < line_->points.size(); ++k)
+    raise(peaks.line_tau[k], stresses[line_->points[k]][4], stresses[line_->points[k]][3]);
 }
 
 void PeakFollower::follow_nodes(const Vector &values, double x, double y, std::vector<double> &largest) const
 {
   for (std::size_t k = 0; k < line_->nodes.size(); ++k)
-    largest[k] = std::max(largest[k], horizontal(values, line_->nodes[k], line_->nodes[k] + 1, x, y));
+    raise_horizontal(largest[k], values, line_->nodes[k], line_->nodes[k] + 1, x, y);
 }
 
 void PeakFollower::gather()

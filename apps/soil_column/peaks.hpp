@@ -16,6 +16,7 @@ struct ColumnPeaks
   double gamma = 0, gamma_depth = 0;        ///< sqrt(gamma_xz^2 + gamma_yz^2) [-]; m
   double ru = 0, ru_depth = 0, ru_time = 0; ///< [-], m, s
   std::vector<double> line_gamma, line_ru;  ///< at the points of a ColumnLine; empty if the mesh is shared out
+  std::vector<double> line_tau;             ///< likewise sqrt(tau_xz^2 + tau_yz^2), Pa; 0 unless it is shaken
   // Likewise at its nodes, horizontal by size: m/s2; m/s and m as the unknowns count (from a rigid base).
   std::vector<double> line_acceleration, line_velocity, line_displacement;
 
@@ -29,7 +30,7 @@ struct ColumnPeaks
   template <class Peaks, class Visit>
   static void for_each_line(Peaks &p, const Visit &visit)
   {
-    visit("peak_gamma", p.line_gamma), visit("peak_line_ru", p.line_ru);
+    visit("peak_gamma", p.line_gamma), visit("peak_line_ru", p.line_ru), visit("peak_tau", p.line_tau);
     visit("peak_acceleration", p.line_acceleration), visit("peak_velocity", p.line_velocity);
     visit("peak_displacement", p.line_displacement);
   }

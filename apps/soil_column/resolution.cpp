@@ -201,6 +201,11 @@ std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vec
   std::vector<std::string> warnings = motion_warnings(scene, motions);
   if (std::string coarse = coarse_elements(scene, velocities, mesh, motions); !coarse.empty())
     warnings.push_back(std::move(coarse));
+  if (const double step = scene.analysis.time_step.value_or(0), steps = scene.output.history_interval / step;
+      step > 0 && steps > 1 && std::abs(steps - std::round(steps)) > 1e-6)
+    warnings.push_back(fmt::format("output.history_interval = {:g} s is {:.6g} of the time step, {:g} s: rows are "
+                                   "{:.6g} s apart. Leave analysis.time_step out, or give a step that divides it.",
+                                   scene.output.history_interval, steps, step, std::round(steps) * step));
   const auto vertical = [](const ColumnMotion &motion) { return motion.axis == Axis::z; };
   if (scene.water.drainage == Drainage::undrained && std::ranges::any_of(scene.motions, vertical))
     warnings.push_back(

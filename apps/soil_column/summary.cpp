@@ -2,6 +2,7 @@
 #include "apps/soil_column/summary.hpp"
 
 #include "apps/common/summary.hpp"
+#include "apps/deposit/resistance.hpp"
 #include "dem/measure/redundancy.hpp"
 
 #include <algorithm>
@@ -70,8 +71,9 @@ Json layers_json(const ColumnScene &scene)
 {
   Json layers = Json::array();
   double top = 0;
-  for (const ColumnLayer &layer : scene.layers)
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
     {
+      const ColumnLayer &layer = scene.layers[k];
       layers.push_back({{"name", layer.name},
                         {"top", top},
                         {"bottom", top + layer.thickness},
@@ -80,6 +82,8 @@ Json layers_json(const ColumnScene &scene)
                         {"shear_modulus", layer.from_formula() ? Json(layer.small_strain_modulus()) : Json()},
                         {"in_situ_pressure", layer.in_situ_pressure},
                         {"in_situ_shear_velocity", layer.from_formula() ? Json(in_situ_velocity(layer)) : Json()}});
+      if (const std::optional<double> resistance = layer_resistance(scene, k))
+        layers.back()["crr"] = *resistance;
       top += layer.thickness;
     }
   return layers;
@@ -90,8 +94,9 @@ void add_expansions(const std::vector<CapExpansion> &caps, Summary &summary)
   summary["expansions"] = Json::array();
   for (const CapExpansion &cap : caps)
     {
-      summary.row("net expansion", "{:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end",
-                  1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
+      if (cap.largest > 0.5e-6) // m, which is not 0.000 mm
+        summary.row("net expansion", "{:.3f} mm of water below {} ({:.2f} m) at t = {:.5g} s; {:.3f} mm at the end",
+                    1e3 * cap.largest, cap.layer, cap.depth, cap.largest_time, 1e3 * cap.last);
       summary["expansions"].push_back({{"below", cap.layer},
                                        {"depth", cap.depth},
                                        {"largest", cap.largest},
@@ -230,6 +235,7 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
   if (s.grains)
     add_grains(*s.grains, summary);
   summary["depths"] = s.point_depths;
+  summary["motion_depths"] = s.motion_depths;
   if (!s.point_depths.empty())
     summary.row("depths of histories", "{} m, the points nearest to those requested",
                 fmt::format("{:.4g}", fmt::join(s.point_depths, ", ")));

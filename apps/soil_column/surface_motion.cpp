@@ -79,9 +79,12 @@ void SurfaceMotion::write_spectra(const std::filesystem::path &path) const
   for (std::size_t k = 0; k < axes_.size(); ++k)
     {
       const char name = "xyz"[axes_[k]];
-      text += fmt::format(",input_{0} (m/s2),surface_{0} (m/s2)", name);
-      columns.push_back(response_spectrum(motions_[axes_[k]], columns[0], damping_, duration_));
-      columns.push_back(sum_over_ranks(spectra_[k].peaks()));
+      text +=
+          fmt::format(",input_{0}_SA (m/s2),surface_{0}_SA (m/s2),input_{0}_PSA (m/s2),surface_{0}_PSA (m/s2)", name);
+      const auto input = response_spectrum(motions_[axes_[k]], columns[0], damping_, duration_),
+                 surface = spectra_[k].peaks();
+      columns.insert(columns.end(),
+                     {input.absolute, sum_over_ranks(surface.absolute), input.pseudo, sum_over_ranks(surface.pseudo)});
     }
   if (!ranks().first())
     return;

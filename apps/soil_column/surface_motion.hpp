@@ -31,8 +31,8 @@ public:
   void follow(const Dynamics &run);
   MotionBands bands() const; ///< collective
 
-  /// A table of the period and of S_a of input and surface along each axis that moves, spectra.csv. The input's comes
-  /// from its own samples. Nothing if nothing moves.   Collective, written on the first rank.
+  /// A table of the period and of SA and PSA of input and surface along each axis that moves, spectra.csv. The input's
+  /// come from its own samples. Nothing if nothing moves.   Collective, written on the first rank.
   void write_spectra(const std::filesystem::path &path) const;
 
   void save(ColumnCheckpoint &checkpoint) const; ///< collective

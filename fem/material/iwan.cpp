@@ -54,8 +54,10 @@ Iwan::Iwan(const IwanParameters &p, std::size_t n_points) : Iwan(p, fit_hyperbol
 
 Iwan::Iwan(const IwanParameters &p, const Backbone &b, std::span<const double> numbers, std::size_t n_more,
            std::size_t n_points)
-    : RowMaterial("iwan", checked_numbers(p, numbers), n_points, elements + 5 * padded(p.elements) + n_more),
-      parameters_(p), width_(padded(p.elements)), stride_(elements + 5 * width_ + n_more)
+    : RowMaterial("iwan", checked_numbers(p, numbers), n_points,
+                  elements + 5 * padded(p.elements) + reconsolidating(p) + n_more),
+      parameters_(p), width_(padded(p.elements)), stride_(elements + 5 * width_ + reconsolidating(p) + n_more),
+      extra_(elements + 5 * width_)
 {
   bulk_per_shear_ = ElasticParameters{1.0, p.poisson_ratio}.bulk_modulus();
   weights_.assign(width_, 0.0); // padding bears nothing and yields never
@@ -73,6 +75,13 @@ Iwan::Iwan(const IwanParameters &p, const Backbone &b, std::span<const double> n
 double Iwan::reference_strain(double p) const { return parameters_.strength_ratio * p / shear_modulus(p); }
 double Iwan::mean_pressure(std::size_t i) const { return committed_[i * stride_ + pressure]; }
 double Iwan::loosening(std::size_t i) const { return committed_[i * stride_ + loose]; }
+
+/// (25) integrated: d p / K
+double Iwan::compression(double from, double to) const
+{
+  const double n = parameters_.exponent, softest = bulk_per_shear_ * shear_modulus(to) * std::pow(to, -n);
+  return (n == 1 ? std::log(to / from) : (std::pow(to, 1 - n) - std::pow(from, 1 - n)) / (1 - n)) / softest;
+}
 
 void Iwan::set_initial_stress(std::span<const Stress> effective)
 {
@@ -94,6 +103,8 @@ void Iwan::set_initial_stress(std::span<const Stress> effective)
       state[pressure] = p;
       state[floor_pressure] = std::min(p, std::max(parameters_.residual_ratio * p, parameters_.min_pressure));
       share_out(s, p, state);
+      if (parameters_.reconsolidation > 0)
+        state[extra_ + initial_pressure] = p;
     }
   committed_ = std::move(states);
   has_trial_ = false;

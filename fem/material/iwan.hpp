@@ -23,6 +23,8 @@ struct IwanParameters
   double residual_ratio = 0.02;            ///< p' never falls below this part of its initial value [-]
   double min_pressure = 200;               ///< nor below this. Pa
   double loosening_limit = 0.01;           ///< volumetric strain kept at most as loosening (see Iwan) [-]
+  double contraction_exponent = 0;         ///< m of (22): cycles to liquefaction go with CSR^-(2 + m) [-]
+  double reconsolidation = 0;              ///< a of (25c); 0: only loosening and K give volumetric strain [-]
   double substep = 2e-5;                   ///< strain of one sub-step at most [-]
   unsigned elements = 12;                  ///< 4 ... 128; backbone within 1.8 % with 12, 0.05 % with 128
 
@@ -48,10 +50,12 @@ Backbone fit_hyperbola(unsigned elements);
 ///     (20) deviator       s = sum of s_k;  |s| = sqrt(J2),  |gamma| = 2 sqrt(J2 of strain): simple shear's tau, gamma
 ///     (21) plastic flow   d gamma_p = sum of w_k d gamma_pk
 ///     (22) volume         d eps_vp = A (M_pt |d gamma_p| - s . d gamma_p / p')       contraction positive;
-///                         A = contraction (1 + z) if the bracket is > 0, else dilation max(0, 1 - p'/p_c)
+///                         A = contraction (1 + z) f^m if the bracket is > 0, else dilation max(0, 1 - p'/p_c);
+///                         f = |d gamma_p| / |d gamma|
 ///     (23) fabric         dz = fabric_rate (z_max - z) d(dilation)
 ///     (24) pressure       d p' = K (d eps_v - d eps_vp)
 ///     (25) moduli         G, K ~ (p'/p_ref)^n
+///     (25c) liquefied     eps_v = a min(0.08, gamma_max) from p' = 0 back to its initial value
 ///
 /// The volume law is Rowe's (1962, doi:10.1098/rspa.1962.0193) stress dilatancy with the stress ratio seen along the
 /// flow (Manzari and Dafalias 1997, doi:10.1680/geot.1997.47.2.255): after a reversal it contracts most. What has
@@ -60,11 +64,15 @@ Backbone fit_hyperbola(unsigned elements);
 /// Without drainage p' falls cycle by cycle, and rises on the way to the strength: loops like a butterfly. As p' falls,
 /// elements are scaled back to their yield; this flow is not counted in the volume law. p' has a floor: contraction (or
 /// pulling apart) beyond it is kept as loosening, a strain that must be closed by compression or dilation before p' can
-/// rise again.
+/// rise again. The plastic part f of the strain is 0 after a reversal and grows with the way from it, so that m > 0
+/// makes small stresses contract less. With `reconsolidation` a point whose p' has been at a fifth of its
+/// initial value (r_u = 0.95 may leave that much) has (25c) (Yoshimine et al. 2006, Soil Dyn. Earthq. Eng. 26, 253) as
+/// the volumetric strain of its reconsolidation: what loosening and K do not give is closed by compression, most of it
+/// while p' is low. gamma_max is the largest |gamma| since the start.
 ///
 /// Tension positive in stresses and strains of the interface. Rotations are not followed: strains are small. There is
-/// no critical void ratio: cyclic mobility tends to loops of one size, and reconsolidation strains are those of
-/// loosening and of K.   tested: tests/fem/material/iwan_test.cpp, tests/fem/material/iwan_liquefaction_test.cpp
+/// no critical void ratio: cyclic mobility tends to loops of one size.
+/// tested: tests/fem/material/iwan_test.cpp, tests/fem/material/iwan_liquefaction_test.cpp
 class Iwan : public RowMaterial
 {
 public:
@@ -98,7 +106,8 @@ protected:
   /// row, behind p' and the elements; 0 at first
   Iwan(const IwanParameters &parameters, const Backbone &backbone, std::span<const double> numbers, std::size_t n_more,
        std::size_t n_points);
-  enum : std::size_t // one point: its numbers, then its elements' deviators component by component
+  enum : std::size_t // one point: its numbers, its elements' deviators component by component, then, if it
+                     // reconsolidates by (25c), what that needs
   {
     pressure,
     floor_pressure,
@@ -106,6 +115,14 @@ protected:
     fabric,
     deviator,
     elements = deviator + 5
+  };
+  enum : std::size_t // of the last part
+  {
+    strain_so_far,
+    largest_strain = strain_so_far + 5, // since it liquefied; 0: it did not
+    volume,                             // volumetric strain since then, compression positive
+    initial_pressure,
+    n_reconsolidation
   };
   using Shear = std::array<double, 5>; // deviator in axes that make |s| = sqrt(J2) and |gamma| = gamma of simple shear
 
@@ -127,11 +144,19 @@ private:
   Increment increment(const Gradient &h, std::size_t point) const;
   void integrate(const double *from, const Increment &d, double *to) const;
   void step(const double *from, const Increment &d, double *to) const;
-  void change_pressure(const double *from, const Shear &flow, double volumetric, double shear, double *to) const;
+  void change_pressure(const double *from, const Shear &flow, const Increment &d, double shear, double *to) const;
+  double reconsolidate(const double *from, const Increment &d, double plastic, double bulk, double *to) const;
+  double compression(double from, double to) const; // volumetric strain of K between two p'
   Stress stress(const double *state) const;
   void share_out(const Shear &deviator, double pressure, double *state) const;
   Stiffness tangent(std::size_t point) const;
 
+  static std::size_t reconsolidating(const IwanParameters &p) // numbers of the last part
+  {
+    return p.reconsolidation > 0 ? std::size_t(n_reconsolidation) : 0;
+  }
+
+  std::size_t extra_; // where the last part begins
   double bulk_per_shear_;
 };
 } // namespace isostat

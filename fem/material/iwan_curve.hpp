@@ -43,7 +43,7 @@ LoopReduction fit_loop_reduction(const SoilCurve &curve, const Backbone &backbon
 ///   next to the elements and uses no strength up. Where p' falls, |n| is scaled back to M p', as an element is. Shear
 ///   stresses in situ (a slope) are those of virgin loading, as in Iwan.
 /// - With a LoopReduction, e the deviatoric strain since virgin soil (that of the shear stress in situ included) and
-///   gamma_m the largest |e| so far, docs/theory_column.md (25b),
+///   gamma_m the largest |e| so far, docs/theory_column.md (25d),
 ///
 ///       s = F s_Iwan + (1 - F) G_sec e,    G_sec = tau(gamma_m)/gamma_m of the backbone at the present p',
 ///       F = F(G_sec/G)

@@ -22,6 +22,7 @@ constexpr Key iwan_in_scenes[] = {
    .range = positive,
    .text = "sqrt(J2)/p' below which shearing contracts and above which it dilates; at most `strength_ratio`."},
   {.path = "contraction", .field = member<&IwanParameters::contraction>, .value = "0.5", .range = not_negative,
+   .group = "resistance",
    .text = "Rate of contraction per plastic shear strain; 0 here and in `dilation`: shear does not change p'."},
   {.path = "dilation", .field = member<&IwanParameters::dilation>, .value = "0.3", .range = {0, 1},
    .reason = "because below 0 it would contract, and above 1 plastic work would be negative",
@@ -37,6 +38,22 @@ constexpr Key iwan_in_scenes[] = {
    .text = "Slip elements of a Gauss point: more make the curve smoother and the step more expensive."},
 };
 
+constexpr const char *published = "because the equations of resistance are published for these";
+constexpr Key density_in_scenes[] = {
+  {.path = "n1_60cs", .field = member<&SandDensity::n1_60cs>, .presence = Presence::optional, .value = "12",
+   .range = {1, 37}, .reason = published, .group = "resistance",
+   .text = "(N1)60cs of the standard penetration test: at the stress in situ in the middle of the layer it liquefies in "
+           "15 cycles of the CRR of Idriss and Boulanger (2008) with K_sigma, and settles then by Yoshimine et al. "
+           "(2006). The CRR must be below the strength. Excludes `contraction`, `fabric_limit` and `fabric_rate`, which follow from it; see "
+           "docs/theory_column.md, section 5."},
+  {.path = "qc1ncs", .field = member<&SandDensity::qc1ncs>, .presence = Presence::optional, .value = "100",
+   .range = {21, 211}, .reason = published, .group = "resistance",
+   .text = "The same by q_c1Ncs of the cone penetration test (Boulanger and Idriss 2014)."},
+  {.path = "relative_density", .field = member<&SandDensity::relative_density>, .presence = Presence::optional,
+   .value = "0.5", .range = {0.15, 0.89}, .reason = published, .group = "resistance",
+   .text = "The same by the relative density D_r: (N1)60cs = 46 D_r^2."},
+};
+
 constexpr Key iwan_fixed[] = {
   {.path = "shear_modulus", .field = member<&IwanParameters::shear_modulus>, .unit = unit::Pa, .range = positive},
   {.path = "reference_pressure", .field = member<&IwanParameters::reference_pressure>, .unit = unit::Pa,
@@ -46,6 +63,8 @@ constexpr Key iwan_fixed[] = {
   {.path = "min_pressure", .field = member<&IwanParameters::min_pressure>, .unit = unit::Pa, .range = positive,
    .reason = "because moduli are divided by it"},
   {.path = "loosening_limit", .field = member<&IwanParameters::loosening_limit>, .range = not_negative},
+  {.path = "contraction_exponent", .field = member<&IwanParameters::contraction_exponent>, .range = not_negative},
+  {.path = "reconsolidation", .field = member<&IwanParameters::reconsolidation>, .range = not_negative},
   {.path = "substep", .field = member<&IwanParameters::substep>, .range = {1e-6, 1e-3}},
 };
 // clang-format on
@@ -53,17 +72,25 @@ constexpr Key iwan_fixed[] = {
 
 SceneFragment<IwanParameters> iwan_keys() { return {iwan_in_scenes}; }
 
+SceneFragment<SandDensity> sand_density_keys() { return {density_in_scenes}; }
+
 SceneFragment<IwanParameters> all_iwan_keys()
 {
   static const KeyTable table{iwan_in_scenes, iwan_fixed};
   return {table.keys()};
 }
 
-void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand)
+void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand,
+                const SandDensity &density)
 {
   const bool feels_shear = sand.contraction > 0 || sand.dilation > 0;
   if (feels_shear && sand.phase_transformation_ratio > sand.strength_ratio)
     document.refuse(prefix + ".phase_transformation_ratio",
                     "must not exceed strength_ratio, which no stress goes beyond. Correct one of them.");
+  const IwanParameters standard;
+  if (density.given() && (sand.fabric_limit != standard.fabric_limit || sand.fabric_rate != standard.fabric_rate))
+    document.refuse(
+        prefix + (sand.fabric_limit != standard.fabric_limit ? ".fabric_limit" : ".fabric_rate"),
+        "follows from n1_60cs, qc1ncs or relative_density. Remove it, or give contraction instead of them.");
 }
 } // namespace isostat

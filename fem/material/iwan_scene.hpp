@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "base/scene/fragment.hpp"
-#include "fem/material/iwan.hpp"
+#include "fem/material/liquefaction_resistance.hpp"
 
 namespace isostat
 {
@@ -9,11 +9,14 @@ class SceneDocument;
 
 /// The keys of a sand that a scene has; its small-strain stiffness is that of its layer.
 SceneFragment<IwanParameters> iwan_keys();
-/// Those and all other parameters: what bytes and checks are made of.
+/// The keys of what says how dense it is; they exclude `contraction`.
+SceneFragment<SandDensity> sand_density_keys();
+/// iwan_keys() and all other parameters: what bytes and checks are made of.
 SceneFragment<IwanParameters> all_iwan_keys();
 
 /// @param prefix  where the keys of the sand are, "layer.0"
-/// @throws InputError  phase transformation above the strength
+/// @throws InputError  phase transformation above the strength; fabric given next to a density
 /// tested: tests/apps/deposit/scene_error_test.cpp
-void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand);
+void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand,
+                const SandDensity &density);
 } // namespace isostat

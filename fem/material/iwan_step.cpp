@@ -63,8 +63,34 @@ Iwan::Increment Iwan::increment(const Gradient &h, std::size_t i) const
   return d;
 }
 
+/// The part of an increment that (25c) takes without a stress, so that p' is back at p0' with its volumetric strain. Of
+/// what K does not give, the part (p0' - p')/p' is left on the way: most is closed while p' is low.
+double Iwan::reconsolidate(const double *from, const Increment &d, double plastic, double bulk, double *to) const
+{
+  const double p = from[pressure], *old = from + extra_, start = old[initial_pressure];
+  double *now = to + extra_, square = 0;
+  for (int c = 0; c < 5; ++c)
+    {
+      now[strain_so_far + c] = old[strain_so_far + c] + d.shear[c];
+      square += now[strain_so_far + c] * now[strain_so_far + c];
+    }
+  const bool liquefied = old[largest_strain] > 0 || p <= std::max(0.2 * start, from[floor_pressure]);
+  now[largest_strain] = liquefied ? std::max(old[largest_strain], std::sqrt(square)) : 0;
+  now[volume] = liquefied ? old[volume] + d.volumetric : 0;
+  now[initial_pressure] = start;
+  if (!liquefied || d.volumetric == 0 || from[loose] > 0) // a gap closes first
+    return 0;
+  const double left =
+      parameters_.reconsolidation * std::min(0.08, now[largest_strain]) - now[volume] - compression(p, start);
+  if (left <= 0)
+    return 0;
+  const double ratio = bulk * left * start / (p * std::max(start - p, 0.05 * start)),
+               most = 1.5 * std::abs(d.volumetric);
+  return std::clamp(d.volumetric - plastic, -most, most) * ratio / (1 + ratio);
+}
+
 /// Pressure (24), volume (22), fabric (23) and loosening, with the moduli and the stress ratio of the beginning.
-void Iwan::change_pressure(const double *from, const Shear &flow, double volumetric, double shear, double *to) const
+void Iwan::change_pressure(const double *from, const Shear &flow, const Increment &d, double shear, double *to) const
 {
   const double p = from[pressure], bulk = bulk_per_shear_ * shear;
   double square = 0, along = 0;
@@ -75,8 +101,17 @@ void Iwan::change_pressure(const double *from, const Shear &flow, double volumet
     }
   // (22)
   double plastic = parameters_.phase_transformation_ratio * std::sqrt(square) - along / p;
-  plastic *= plastic > 0 ? parameters_.contraction * (1 + from[fabric])
-                         : parameters_.dilation * std::max(0.0, 1 - p / parameters_.critical_pressure);
+  double contraction = parameters_.contraction * (1 + from[fabric]);
+  if (parameters_.contraction_exponent > 0)
+    {
+      double all = 0;
+      for (double g : d.shear)
+        all += g * g;
+      contraction *= all > 0 ? std::pow(square / all, 0.5 * parameters_.contraction_exponent) : 0;
+    }
+  plastic *= plastic > 0 ? contraction : parameters_.dilation * std::max(0.0, 1 - p / parameters_.critical_pressure);
+  const double volumetric =
+      parameters_.reconsolidation > 0 ? d.volumetric - reconsolidate(from, d, plastic, bulk, to) : d.volumetric;
   // (24); a gap, and what closes it, are volumetric strain that changes no stress
   double elastic = volumetric - plastic - from[loose], gap = std::max(0.0, -elastic);
   if (from[loose] > 0 && elastic < 0)
@@ -129,7 +164,7 @@ void Iwan::step(const double *from, const Increment &d, double *to) const
   // (21): w_k d gamma_pk = above_k s_k / G
   for (int c = 0; c < 5; ++c)
     flow[c] = compliance * sum_of_products(above, s[c], n);
-  change_pressure(from, flow, d.volumetric, shear, to);
+  change_pressure(from, flow, d, shear, to);
   // radial return to the yield of the new p', and (20)
   const double p_new = to[pressure];
   for (std::size_t k = 0; k < n; ++k)
@@ -166,7 +201,7 @@ Stiffness Iwan::tangent(std::size_t i) const
   constexpr double tiny = 1e-10;
   constexpr int entry[6] = {0, 4, 8, 5, 2, 1}; // of the gradient: xx, yy, zz, yz, xz, xy
   const auto e = strain(increments_[i]);
-  std::array<double, elements + 5 * max_elements> state{};
+  std::array<double, elements + 5 * max_elements + n_reconsolidation> state{};
   integrate(from, base, state.data());
   const Stress here = stress(state.data());
   Stiffness c;

@@ -29,7 +29,7 @@ struct ZenerBody
 /// are added those of relaxing elements h_l, each of which follows the inner deviator s and the volumetric strain eps_v
 /// (tension positive),
 ///
-///     (25c) stress = inner stress + sum of Y_l h_l,     dh_l/dt + w_l h_l = d(s + K eps_v 1)/dt
+///     (25e) stress = inner stress + sum of Y_l h_l,     dh_l/dt + w_l h_l = d(s + K eps_v 1)/dt
 ///
 /// exact for a uniform rate within a time step. In elastic soil this is the body of ZenerBody, for shear and
 /// compression alike. In soil that yields, damping adds to that of its loops in the same proportion to stress at any

@@ -72,7 +72,8 @@ ResponseSpectrum::ResponseSpectrum(const std::vector<double> &periods, double da
                                {&r.damp, o.damp},
                                {&r.u, 0.0},
                                {&r.v, 0.0},
-                               {&r.peak, 0.0}})
+                               {&r.peak, 0.0},
+                               {&r.largest, 0.0}})
         to->push_back(value);
     }
 }
@@ -82,7 +83,7 @@ ResponseSpectrum::State ResponseSpectrum::state(std::size_t i) const
   if (i < states_.size())
     return states_[i];
   const std::size_t k = i - states_.size();
-  return {rows_.u[k], rows_.v[k], rows_.peak[k]};
+  return {rows_.u[k], rows_.v[k], rows_.peak[k], rows_.largest[k]};
 }
 
 void ResponseSpectrum::step(const Oscillator &o, double from, double to, State &s)
@@ -97,6 +98,7 @@ void ResponseSpectrum::step(const Oscillator &o, double from, double to, State &
       s.u = std::abs(u) < smallest ? 0 : u;
       s.v = std::abs(v) < smallest ? 0 : v;
       s.peak = std::max(s.peak, std::abs(o.stiff * u + o.damp * v));
+      s.largest = std::max(s.largest, std::abs(u));
       a0 = a1;
     }
 }
@@ -110,7 +112,8 @@ void ResponseSpectrum::follow(double acceleration)
       const double *a11 = rows_.a11.data(), *a12 = rows_.a12.data(), *a21 = rows_.a21.data(), *a22 = rows_.a22.data(),
                    *b01 = rows_.b01.data(), *b02 = rows_.b02.data(), *b11 = rows_.b11.data(), *b12 = rows_.b12.data(),
                    *stiff = rows_.stiff.data(), *damp = rows_.damp.data(), a0 = last_, a1 = acceleration;
-      double *__restrict us = rows_.u.data(), *__restrict vs = rows_.v.data(), *__restrict peak = rows_.peak.data();
+      double *__restrict us = rows_.u.data(), *__restrict vs = rows_.v.data(), *__restrict peak = rows_.peak.data(),
+                         *__restrict largest = rows_.largest.data();
       const std::size_t n = rows_.u.size();
       for (std::size_t i = 0; i < n; ++i)
         {
@@ -121,21 +124,24 @@ void ResponseSpectrum::follow(double acceleration)
           vs[i] = std::abs(v) < smallest ? 0 : v;
           peak[i] = size > peak[i] ? size : peak[i];
         }
+      for (std::size_t i = 0; i < n; ++i) // apart: more pointers than registers
+        largest[i] = std::max(largest[i], std::abs(us[i]));
     }
   started_ = true;
   last_ = acceleration;
 }
 
-std::vector<double> ResponseSpectrum::peaks() const
+ResponseSpectrum::Peaks ResponseSpectrum::peaks() const
 {
-  std::vector<double> peaks;
+  Peaks peaks;
   for (std::size_t i = 0; i < oscillators_.size(); ++i)
     {
       State s = state(i);
       step(oscillators_[i], last_, 0, s);
       for (unsigned k = 0; k < oscillators_[i].after; ++k)
         step(oscillators_[i], 0, 0, s);
-      peaks.push_back(s.peak);
+      peaks.absolute.push_back(s.peak);
+      peaks.pseudo.push_back(oscillators_[i].stiff * s.largest);
     }
   return peaks;
 }
@@ -146,25 +152,25 @@ std::vector<double> ResponseSpectrum::save() const
   for (std::size_t i = 0; i < oscillators_.size(); ++i)
     {
       const State s = this->state(i);
-      state.insert(state.end(), {s.u, s.v, s.peak});
+      state.insert(state.end(), {s.u, s.v, s.peak, s.largest});
     }
   return state;
 }
 
 void ResponseSpectrum::restore(const std::vector<double> &state)
 {
-  if (state.size() != 2 + 3 * oscillators_.size())
+  if (state.size() != 2 + 4 * oscillators_.size())
     throw InputError("checkpoint: a response spectrum of " + std::to_string(state.size()) +
                      " numbers does not fit; resume with the scene of the first run");
   last_ = state[0];
   started_ = state[1] != 0;
   for (std::size_t i = 0; i < oscillators_.size(); ++i)
     {
-      const double *s = &state[2 + 3 * i];
+      const double *s = &state[2 + 4 * i];
       if (const std::size_t k = i - states_.size(); i >= states_.size())
-        rows_.u[k] = s[0], rows_.v[k] = s[1], rows_.peak[k] = s[2];
+        rows_.u[k] = s[0], rows_.v[k] = s[1], rows_.peak[k] = s[2], rows_.largest[k] = s[3];
       else
-        states_[i] = {s[0], s[1], s[2]};
+        states_[i] = {s[0], s[1], s[2], s[3]};
     }
 }
 
@@ -178,11 +184,12 @@ std::vector<double> spectrum_periods()
   return periods;
 }
 
-std::vector<double> response_spectrum(const Motion &motion, const std::vector<double> &periods, double damping,
-                                      double end)
+ResponseSpectrum::Peaks response_spectrum(const Motion &motion, const std::vector<double> &periods, double damping,
+                                          double end)
 {
+  const std::vector<double> rest(periods.size(), 0.0);
   if (motion.at_rest())
-    return std::vector<double>(periods.size(), 0.0);
+    return {rest, rest};
   ResponseSpectrum spectrum(periods, damping, motion.interval());
   const auto time = [&](std::size_t k) { return motion.delay() + static_cast<double>(k) * motion.interval(); };
   for (std::size_t k = 0; k < motion.accelerations().size() && time(k) <= end; ++k)

@@ -4,9 +4,9 @@
 
 namespace isostat
 {
-/// Peak absolute accelerations of damped oscillators on a moving base, sample by sample:
+/// Peak accelerations of damped oscillators on a moving base, sample by sample, absolute SA and pseudo PSA:
 ///
-///     u'' + 2 xi w u' + w^2 u = -a,   S_a = max |u'' + a| = max |w^2 u + 2 xi w u'|
+///     u'' + 2 xi w u' + w^2 u = -a,   SA = max |u'' + a| = max |w^2 u + 2 xi w u'|,   PSA = w^2 max |u|
 ///
 /// by the exact step for an acceleration that is linear between samples (Nigam & Jennings 1969,
 /// doi:10.1785/BSSA0590020909), in as many equal parts as make it T/64 at most: the crest between two is missed by
@@ -20,9 +20,12 @@ public:
 
   /// The next sample, m/s2; at the first all are at rest.
   void follow(double acceleration);
-  /// S_a (m/s2) of each period, with one period of free vibration after the last sample, from which the motion falls to
-  /// rest within an interval.
-  std::vector<double> peaks() const;
+  struct Peaks
+  {
+    std::vector<double> absolute, pseudo; ///< of each period, m/s2
+  };
+  /// With one period of free vibration after the last sample, from which the motion falls to rest within an interval.
+  Peaks peaks() const;
 
   /// Numbers of its state, for a checkpoint.   @throws InputError  from restore(): another number
   std::vector<double> save() const;
@@ -38,12 +41,12 @@ private:
   };
   struct State
   {
-    double u = 0, v = 0, peak = 0;
+    double u = 0, v = 0, peak = 0, largest = 0; ///< of |w^2 u + 2 xi w u'|, of |u|
   };
   /// The same of those that need no parts, side by side.
   struct Rows
   {
-    std::vector<double> a11, a12, a21, a22, b01, b02, b11, b12, stiff, damp, u, v, peak;
+    std::vector<double> a11, a12, a21, a22, b01, b02, b11, b12, stiff, damp, u, v, peak, largest;
   };
   static Oscillator oscillator(double period, double damping, double interval);
   static void step(const Oscillator &o, double from, double to, State &s);
@@ -61,6 +64,6 @@ private:
 std::vector<double> spectrum_periods();
 
 /// The spectrum of a motion, from its own samples up to a time.   @param end  s
-std::vector<double> response_spectrum(const Motion &motion, const std::vector<double> &periods, double damping,
-                                      double end);
+ResponseSpectrum::Peaks response_spectrum(const Motion &motion, const std::vector<double> &periods, double damping,
+                                          double end);
 } // namespace isostat

@@ -6,6 +6,7 @@
 #include "fem/water/pressure_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -44,6 +45,8 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
     }
   const double stable = stable_step();
   time_step_ = settings_.time_step > 0 ? settings_.time_step : settings_.safety * stable;
+  if (settings_.time_step == 0 && settings_.multiple > time_step_)
+    time_step_ = settings_.multiple / std::ceil(settings_.multiple / time_step_);
   if (time_step_ > stable)
     throw InputError(fmt::format("time step = {:.6g} s; must be <= {:.6g} s, the stable step of the stiffest element. "
                                  "Give a smaller one, or leave it out.",

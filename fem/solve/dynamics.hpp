@@ -19,7 +19,8 @@ using SurfaceTraction = std::function<std::array<double, 3>(double time)>;
 
 struct DynamicsSettings
 {
-  double time_step = 0;      ///< s; 0: safety times the stable step at the start
+  double time_step = 0;      ///< s; 0: safety times the stable step at the start, or less: see `multiple`
+  double multiple = 0;       ///< s; a step that is not given divides this interval if the interval is longer
   double safety = 0.8;       ///< of the stable step that may be used
   double mass_damping = 0;   ///< a_M, 1/s: force -a_M M v, v as the unknown counts it (relative to a rigid base)
   double viscosity = 0;      ///< beta of SkeletonViscosity, s; 0: none

@@ -68,6 +68,28 @@ PointAtDepth point_at_depth(const FiniteElementSpace &space, double depth)
   return found;
 }
 
+std::vector<double> node_depths(const MeshSpec &mesh)
+{
+  const double scale = mesh.ground.is_level() ? 1 : mesh.ground_at(mesh.line[0]) / mesh.soil.height();
+  std::vector<double> depths = {0};
+  double top = 0;
+  for (std::size_t k = 0; k < mesh.soil.layers.size(); ++k)
+    {
+      const Layer &layer = mesh.soil.layers[k];
+      const unsigned n = layer.n_cells();
+      double before = 0;
+      for (double end : mesh.cell_ends(2, k))
+        {
+          if (mesh.degree == 2)
+            depths.push_back(scale * (top + layer.thickness * (before + end) / (2 * n)));
+          depths.push_back(scale * (end == n ? top + layer.thickness : top + layer.thickness * end / n));
+          before = end;
+        }
+      top += layer.thickness;
+    }
+  return depths;
+}
+
 ColumnLine column_line(const FiniteElementSpace &space)
 {
   const MeshSpec &mesh = space.mesh();
@@ -77,27 +99,9 @@ ColumnLine column_line(const FiniteElementSpace &space)
       line.points.push_back(q);
       line.point_depths.push_back(mesh.depth(space.position[q]));
     }
-  const auto add_node = [&](double depth) {
-    line.node_depths.push_back(depth);
+  line.node_depths = node_depths(mesh);
+  for (const double depth : line.node_depths)
     line.nodes.push_back(static_cast<unsigned>(space.find_dof(mesh.on_line(depth), 0)));
-  };
-  const double scale = mesh.ground.is_level() ? 1 : mesh.ground_at(mesh.line[0]) / mesh.soil.height();
-  double top = 0;
-  add_node(0);
-  for (std::size_t k = 0; k < mesh.soil.layers.size(); ++k)
-    {
-      const Layer &layer = mesh.soil.layers[k];
-      const unsigned n = layer.n_cells();
-      double before = 0;
-      for (double end : mesh.cell_ends(2, k))
-        {
-          if (mesh.degree == 2)
-            add_node(scale * (top + layer.thickness * (before + end) / (2 * n)));
-          add_node(scale * (end == n ? top + layer.thickness : top + layer.thickness * end / n));
-          before = end;
-        }
-      top += layer.thickness;
-    }
   return line;
 }
 } // namespace isostat

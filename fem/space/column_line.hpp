@@ -14,6 +14,9 @@ struct ColumnLine
   std::vector<double> node_depths;  ///< m
 };
 
+/// Depths of the nodes on that line, from the surface down, m.
+std::vector<double> node_depths(const MeshSpec &mesh);
+
 /// tested: tests/apps/soil_column_test.py
 ColumnLine column_line(const FiniteElementSpace &space);
 

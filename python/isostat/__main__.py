@@ -3,6 +3,7 @@
 
     isostat calibrate PLAN                            parameters of a scene from laboratory curves
     isostat resistance SCENE --ratios 0.1,0.15,0.2    tests at several amplitudes: a resistance curve
+    isostat soil-test SCENE                           element tests of a column's material: G/G_max, damping, CRR
     isostat ensemble SCENE -n 8                       a soil column with eight sets of packings: bands
     isostat compare results/one results/other         two runs side by side in compare.html
     isostat element_test SCENE                        the program of this name, with everything that follows
@@ -19,11 +20,13 @@ from isostat.figures.command_line import meant
 
 CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by small element tests",
              "resistance": "cyclic stress ratio against cycles to liquefaction, from many tests",
+             "soil-test": "element tests of the material of a column's layer: G/G_max, damping, CRR",
              "ensemble": "a soil column with many sets of packings or many records: bands of all",
              "library": "periodic specimens at several pressures and densities, in one file",
              "study": "NAME: the runs, tables and figures behind a page of results"}
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
          "animate": "RESULTS [-o FILE.gif]: packings and their forces during the run, also as .mp4",
+         "motion": "RESULTS [--at surface|input|within|DEPTH] [-o FILE.at2]: a motion of a soil column as PEER AT2",
          "report": "RESULTS: draw figures and report.html of a results folder again, also during its run"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
@@ -55,7 +58,7 @@ def help_text():
 def view(name, words):
     """Becomes the program that draws and reports."""
     os.environ["PYTHONPATH"] = os.path.dirname(__file__)
-    module = ["figures.animation"] if name == "animate" else ["report", name]
+    module = {"animate": ["figures.animation"], "motion": ["figures.motion_file"]}.get(name, ["report", name])
     os.execv(sys.executable, [sys.executable, "-B", "-P", "-u", "-m", *module, *words])
 
 
@@ -69,7 +72,7 @@ def main(words=None):
     warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
     name, *rest = (sys.argv[1:] if words is None else words) or ["--help"]
     if name in CAMPAIGNS:
-        return importlib.import_module(f"isostat.campaign.{name}").main(rest)
+        return importlib.import_module(f"isostat.campaign.{name.replace('-', '_')}").main(rest)
     if name in PACKINGS:
         return importlib.import_module("isostat.convert_packing").main(rest)
     if name in VIEWS:

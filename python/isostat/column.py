@@ -4,13 +4,15 @@
 tested: tests/python/column_test.py
 """
 import abc
+import importlib
 import io
+import pathlib
 
 import numpy as np
 
 from isostat import _core
 from isostat.calls import check_use, path_text, warned
-from isostat.results import Results
+from isostat.results import Results, read_table
 from isostat.scene import Scene, scene_source
 
 try:
@@ -132,8 +134,76 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
         return results
 
 
+class SoilPoint(_column.SoilPoint):
+    """One Gauss point of the material of a layer (elastic, iwan or mohr_coulomb), in an element test.
+
+    SoilPoint(scene, layer=None, vertical_stress=None)
+
+    scene            ColumnScene      layer  its name; None: the first of such a material
+    vertical_stress  effective, compression positive, Pa, with the k0 of the layer; None: that in the middle of the layer
+
+    Simple shear is along xz without lateral strain. Raises InputError, and RunFailure where no strain gives a stress.
+    isostat.campaign.soil_test.soil_test() makes a whole set of tests.
+
+    point = column.SoilPoint(scene, "sand")
+    cycles, path = point.cyclic_shear(0.2 * 100e3, 50)
+    point.shear_to(0)
+    settled = point.compress_to(100e3)[-1, 4]
+    """
+
+
 class ColumnResults(Results):
-    """A results folder of soil_column or run(): as Results, with draw() for its figures."""
+    """A results folder of soil_column or run(): as Results, with draw() for its figures, and what is taken out of a site
+    response: each method is the function of this name in isostat.figures.site_response, which says what it returns.
+
+    profile     History of profile.csv: largest values of all steps over the depth, CSR
+    where       "surface", "input", "within" (at the base) or one of output.depths, m
+    Needs matplotlib and h5py. Raises InputError (a motion that was not recorded)
+    """
+
+    @property
+    def profile(self):
+        return read_table(self.folder / "profile.csv")
+
+    def motion(self, where="surface", axis="x"):
+        """Accelerations (m/s2) and their interval (s)."""
+        return self._response("motion", where, axis)
+
+    def spectrum(self, where="surface", axis="x", periods=None, damping=None):
+        """Periods (s), absolute and pseudo spectral acceleration SA and PSA (m/s2)."""
+        return self._response("spectrum", where, axis, periods, damping)
+
+    def intensity(self, where="surface", axis="x"):
+        """{PGA, arias, D5_95, CAV}."""
+        return self._response("intensity_at", where, axis)
+
+    def site(self):
+        """{height, travel_time, mean_velocity, V_s30, period}."""
+        return self._response("site")
+
+    def transfer(self, axis="x", over=None, f=None):
+        """Frequencies (Hz) and Fourier ratio of the surface over the motion "within" or "outcrop"."""
+        return self._response("transfer", axis, over, f)
+
+    def first_frequency(self, axis="x"):
+        """f1 of the transfer function, Hz, or None."""
+        return self._response("first_frequency", axis)
+
+    def resistance(self):
+        """Depth, CSR, CRR and factor of safety, or None without a layer that has a resistance."""
+        return self._response("resistance")
+
+    def write_at2(self, path, where="surface", axis="x"):
+        """Leaves a motion as a record of PEER's format AT2, which motion.file of a scene reads."""
+        self._response("write_at2", pathlib.Path(path), where, axis)
+
+    def _response(self, name, *arguments):
+        results, response, common = (importlib.import_module(f"isostat.figures.{module}")
+                                     for module in ("column_results", "site_response", "common"))
+        try:
+            return getattr(response, name)(results.Column(self.folder), *arguments)
+        except common.BadInput as error:
+            raise _core.InputError(f"{error}.") from error
 
     @property
     def program(self):

@@ -133,10 +133,10 @@ def draw(folder: str | os.PathLike[str], name: str, program: str = "element_test
     except figures.BadInput as error:
         raise _core.InputError(f"{error}.") from error
     with figures.plt.rc_context(figures.STYLE):
-        figure = drawing.figures[name](results)
-    if figure is None:
+        pages = importlib.import_module("isostat.figures.drawing").pages_of(drawing.figures[name](results))
+    if not pages:
         raise _core.InputError(f"{folder}: has nothing that {name} shows.")
-    return figure.axes
+    return [axes for figure in pages for axes in figure.axes]
 
 
 class Results:

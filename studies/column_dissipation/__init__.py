@@ -65,7 +65,7 @@ def draw(columns, path):
             column = columns[name]
             panels[k, 0].plot(column.time, column[f"surface_a{axis}"], color=colour, linewidth=0.6, label=label)
             if "rows" not in name:
-                panels[k, 1].plot(column.spectra["period"], column.spectra[f"surface_{axis}"], color=colour)
+                panels[k, 1].plot(column.spectra["period"], column.spectra[f"surface_{axis}_SA"], color=colour)
         panels[k, 0].set(xlim=(1, 9), ylabel=f"$a_{axis}$ of the surface (m/s$^2$)")
         panels[k, 1].set(ylabel="$S_a$ (m/s$^2$), 5 % damping", xscale="log")
         panels[k, 1].axvspan(0.02, 0.04, color="#eeeeee", zorder=0)

@@ -152,7 +152,7 @@ def read(run, folder):
     numbers = {
         "thickness": weight[ru.max(axis=0) > LIQUEFIED].sum(), "strained": weight[gamma > STRAINED].sum(),
         "gamma": summary["peak_gamma"], "onset": late[0] if len(late) else np.nan, "pga": summary["peak_surface_below"],
-        "sa": np.interp(0.3, spectra["period"], spectra["surface_x"]),
+        "sa": np.interp(0.3, spectra["period"], spectra["surface_x_SA"]),
         "arias": np.pi / (2 * 9.80665) * np.trapz(a**2, history["time"]), "settlement": summary["settlement"],
         "redundancy": np.mean([grains[f"p{k}_IR"][-1] for k in range(len(depth))])}
     return Result(run, numbers, depth, ru.max(axis=0), gamma, history)

@@ -105,7 +105,7 @@ class Ensemble(ColumnTest):
                     profiles[name].append(file[name][()])
         bands = {kind: columns(few / f"bands_{kind}.csv")
                  for kind in ("points", "nodes", "grains", "spectra", "history")}
-        spectra = [columns(member / "spectra.csv")["surface_x"] for member in members]
+        spectra = [columns(member / "spectra.csv")["surface_x_SA"] for member in members]
         time = bands["history"]["time"]
         histories = {name: [np.interp(time, rows["time"], rows[name]) for rows in
                             (columns(member / "history.csv") for member in members)]

@@ -44,7 +44,7 @@ def write_spectra(folder, history):
     moving = [axis for axis in "xyz" if np.abs(history.get(f"input_a{axis}", 0)).max() > 0]
     if moving:
         periods = np.geomspace(0.02, 5, 160)
-        columns = {f"{where}_{axis}": np.full_like(periods, np.abs(history[f"{where}_a{axis}"]).max())
+        columns = {f"{where}_{axis}_SA": np.full_like(periods, np.abs(history[f"{where}_a{axis}"]).max())
                    for axis in moving for where in ("input", "surface")}
         header = ",".join(["period (s)", *(f"{name} (m/s2)" for name in columns)])
         np.savetxt(folder / "spectra.csv", np.column_stack([periods, *columns.values()]), fmt="%.10g", delimiter=",",

@@ -15,9 +15,9 @@ import numpy as np
 import column_fixture as fixture
 from figures.column_analysis import (Terzaghi, exact_transfer, response_spectrum, smoothed,
                                      transfer_function)
-from figures.column_consolidation import settlement
+from figures.column_consolidation import settlement, unit_of
 from figures.column_results import Column, quantity
-from figures.column_grains import first
+from figures.column_grains import first, shade_index
 from figures.column_soil import outline
 from figures.common import plt, use_style
 from figures.soil_column import DRAWING
@@ -172,6 +172,10 @@ class Figures(ToleranceTest):
         self.assertEqual(len(computed), 4)
         self.assert_below(np.abs(np.diff(series[:, 1])).max(), 0.02 * np.ptp(series[:, 1]), "no corners are seen")
 
+    def test_units_of_long_times(self):
+        for last, unit in ((100, "s"), (1800, "minutes"), (7200, "hours"), (3e5, "days"), (1e8, "years")):
+            self.assertEqual(unit_of(last)[0], unit)
+
     def test_expansion_under_a_cap(self):
         folder = fixture.capped(self.folder / "run")
         self.assertEqual(Column(folder).capped_boundaries(), [2.0])
@@ -248,6 +252,29 @@ class Grains(ToleranceTest):
         self.assertEqual([prefix for _, prefix in column.grains.points], ["d0", "d1", "d2", "d3"])
         self.assertIsNone(column.layers[0]["velocity"])
         self.assertIsNone(column.uniform_elastic())
+
+    def test_no_colour_where_there_are_no_grains(self):
+        """Neither over layers of another material, between others or at an end, nor before the first and after the last
+        time; lines break between layers."""
+        column = Column(fixture.grains(self.folder / "run"))
+        whole, (time, depth) = column.grains.profiles, (column.grains.profiles[name] for name in ("time", "depth"))
+        for lies, painted in (((depth > 2) & (depth < 8), [(2, 8)]), ((depth < 2) | (depth > 8), [(0, 2), (8, 15)]),
+                              (depth > 8, [(8, 15)])):
+            kept = slice(1, -1)
+            column.grains.profiles = {"time": time[kept], "depth": depth[lies],
+                                      **{name: values[kept][:, lies] for name, values in whole.items()
+                                         if name not in ("time", "depth")}}
+            figure, axes = plt.subplots()
+            x, y, _ = shade_index(column, figure, axes, 20)
+            cells = axes.collections[0].get_array().reshape(len(y) - 1, len(x) - 1)
+            self.assertEqual((x[0], x[-1]), (time[1], time[-2]))
+            coloured = np.isfinite(np.ma.filled(cells, np.nan)).all(axis=1)
+            for top, bottom, colour in zip(y[:-1], y[1:], coloured):
+                self.assertEqual(colour, any(a <= top and bottom <= b for a, b in painted), (top, bottom))
+            self.assert_near((y[0], y[-1]), (painted[0][0], painted[-1][1]), 1e-12, "boundaries of the scene")
+            z, _ = column.broken(depth[lies], depth[lies])
+            self.assertEqual(np.isnan(z).sum(), len(painted) - 1)
+            plt.close(figure)
 
     def test_none(self):
         grains = Column(fixture.liquefaction(self.folder / "run")).grains

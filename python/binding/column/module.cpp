@@ -10,6 +10,7 @@
 #include "coupling/batch/wave_moduli_cache.hpp"
 #include "fem/libraries.hpp"
 #include "python/binding/column/python_material.hpp"
+#include "python/binding/column/soil_point.hpp"
 #include "python/binding/given.hpp"
 #include "python/binding/warnings.hpp"
 
@@ -154,6 +155,7 @@ PYBIND11_MODULE(_column, module)
           "__eq__", [](const ColumnScene &one, const ColumnScene &other) { return one == other; }, py::is_operator())
       .def("__hash__", [](const ColumnScene &scene) { return py::hash(py::str(to_toml(scene))); })
       .def("__str__", [](const ColumnScene &scene) { return to_toml(scene); });
+  python::add_soil_point(module);
   module.def("run", &python::run);
   module.def("wave_moduli", &python::wave_moduli);
 }

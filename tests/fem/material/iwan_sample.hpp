@@ -15,6 +15,10 @@ inline const IwanParameters dense{.shear_modulus = 75e6,
                                   .contraction = 0.2,
                                   .dilation = 0.6};
 
+/// With what resisting() sets, and not much to close, so that stress comes back soon.
+inline const IwanParameters settling{
+    .fabric_limit = 100, .fabric_rate = 150, .contraction_exponent = 1.5, .reconsolidation = 0.4};
+
 inline IwanParameters dry() // p' feels no shear
 {
   IwanParameters p;

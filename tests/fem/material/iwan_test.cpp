@@ -254,6 +254,48 @@ TEST(Iwan, TangentIsTheDerivativeOfTheTrial)
       }
 }
 
+/// (22): the exponent multiplies contraction by the plastic part of the strain, 1 - tau/(G gamma) in virgin loading.
+TEST(Iwan, ContractionGoesWithThePlasticPartOfTheStrain)
+{
+  const auto fall = [](double exponent, double &part) {
+    Sample s({.shear_modulus = 500e6, .contraction_exponent = exponent, .substep = 1e-3});
+    part = 1 - s.shear(1e-4) / (500e6 * 1e-4);
+    return p0 - s.iwan.mean_pressure(0);
+  };
+  double part = 0, ignored = 0;
+  const double all = fall(0, part);
+  EXPECT_GT(part, 0.3);
+  for (double exponent : {0.5, 1.0, 3.0})
+    EXPECT_CLOSE_BECAUSE(fall(exponent, ignored), all * std::pow(part, exponent), 0.05 * exponent,
+                         "the stress also follows the fall of p', by which elements return to their yield");
+}
+
+/// Liquefied sand that settles: its tangent, and its state through bytes.
+TEST(Iwan, ReconsolidationIsPartOfStateAndTangent)
+{
+  Sample s(settling), other(settling);
+  shake(s, 0.15);
+  for (int k = 0; k < 20; ++k)
+    s.strain({0, 0, 0, 0, 0, 0, 0, 0, -2e-5});
+  const Gradient h{0, 0, 1e-6, 0, 0, 0, 0, 0, -1e-5};
+  Gradient more = h, less = h;
+  more[8] += 1e-9;
+  less[8] -= 1e-9;
+  Stress high, low;
+  Stiffness c;
+  s.iwan.trial({&more, 1}, {&high, 1});
+  s.iwan.trial({&less, 1}, {&low, 1});
+  s.iwan.trial({&h, 1}, {&s.stress, 1});
+  s.iwan.stiffness({&c, 1});
+  EXPECT_NEAR_BECAUSE(c(2, 2), (high[2] - low[2]) / 2e-9, 1e-3 * settling.shear_modulus,
+                      "as in the test of the tangent");
+  s.iwan.rollback();
+  other.iwan.unpack(s.iwan.pack());
+  s.strain(h);
+  other.strain(h);
+  EXPECT_EQ(s.stress, other.stress);
+}
+
 TEST(Iwan, RefusesImpossibleSoils)
 {
   EXPECT_THROW(Iwan({.shear_modulus = 0}, 1), InputError);

@@ -96,7 +96,7 @@ def read_files(member: Member, folder: pathlib.Path) -> MemberResults:
     numbers["arias_intensity"] = arias_intensity(history["time"], [history[f"surface_a{axis}"] for axis in axes])
     if axes:
         spectra = read_table(folder / "spectra.csv")
-        larger = np.max([spectra[f"surface_{axis}"] for axis in axes], axis=0)
+        larger = np.max([spectra[f"surface_{axis}_SA"] for axis in axes], axis=0)
         curves["spectra"] = {("period", "s"): spectra["period"], ("surface_Sa", "m/s2"): larger}
         numbers |= {f"surface_Sa_{at:g}s": np.interp(at, spectra["period"], larger) for at in PERIODS}
     numbers["peak_gamma"] = summary["peak_gamma"]

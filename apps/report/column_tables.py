@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables of the report of a soil column: its layers, the site, motions, resistance to liquefaction.
+
+tested: tests/apps/site_response_test.py"""
+import numpy as np
+
+from figures import site_response
+
+from . import html
+
+# Keys of a layer that have a column of their own, or describe the mesh.
+ELSEWHERE = {"name", "thickness", "cells", "cell_size", "density", "material", "shear_velocity", "shear_modulus"}
+
+
+def name_of(layer, k):
+    return layer.get("name") or f"layer {k}"
+
+
+def span(values, digits=3):
+    """"120" or "92 to 131"."""
+    low, high = (f"{value:.{digits}g}" for value in (min(values), max(values)))
+    return low if low == high else f"{low} to {high}"
+
+
+def speeds(column, k):
+    """Of shear waves in a layer at the start."""
+    if "shear_velocity" in column.profiles:
+        inside = column.layer_at(column.profiles["depth"]) == k
+        return span(column.profiles["shear_velocity"][inside]) if inside.any() else "-"
+    velocity = column.layers[k]["velocity"]
+    return f"{velocity:.4g}" if velocity else "-"
+
+
+def damping(column, layer):
+    """Mass damping as a share of critical at the frequency of the site, a_M/(4 pi f)."""
+    period, own = site_response.site(column).get("period"), layer["material"] != "elastic"
+    mass = column.damping["mass_damping"]
+    share = f"{100 * mass * period / (4 * np.pi):.2g} % at {1 / period:.3g} Hz" if mass and period else ""
+    return ", ".join(filter(None, (share, "hysteretic" if own else ""))) or "none"
+
+
+def layers(column):
+    """A row for each layer, from the surface down."""
+    ends, rows = np.cumsum([0.0, *(layer["height"] for layer in column.layers)]), []
+    for k, table in enumerate(column.scene.get("layer", [])):
+        given = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in table.items() if key not in ELSEWHERE)
+        weight = column.layers[k]["density"] * column.water["gravity"] / 1e3
+        rows.append((name_of(table, k), f"{ends[k]:.4g} to {ends[k + 1]:.4g}", f"{column.layers[k]['height']:.4g}",
+                     f"{weight:.4g}", speeds(column, k), damping(column, table), table["material"].replace("_", "-"),
+                     given))
+    head = ("Layer", "Depth (m)", "Thickness (m)", "Unit weight (kN/m³)", "V_s (m/s)", "Damping", "Material",
+            "Parameters")
+    return html.table(head, rows, "layers", numbers=(1, 2, 3, 4)) if rows else ""
+
+
+def site(column):
+    """Velocities and period."""
+    s = site_response.site(column)
+    if not s:
+        return ""
+    f1 = {axis: site_response.first_frequency(column, axis) for axis in column.horizontal if len(column.time) > 8}
+    shallow = "not defined: the column is less deep and its base is rigid"
+    return html.properties([
+        ("V_s, mean by travel time", f"{s['mean_velocity']:.1f} m/s over {s['height']:.4g} m"),
+        ("V_s30", f"{s['V_s30']:.1f} m/s" + (", with rock below the column" if s["height"] < 30 else "")
+         if s["V_s30"] else shallow),
+        ("period 4H/V_s", f"{s['period']:.4g} s ({1 / s['period']:.4g} Hz), by travel time at small strain"),
+        *((f"f1 along {axis}", f"{f:.3g} Hz, largest ratio of surface and {site_response.input_name(column)} motion "
+           f"below {2 / s['period']:.3g} Hz") for axis, f in f1.items() if f)])
+
+
+def motions(column):
+    """Intensities of input, of the base of a column on rock, of the surface and the output depths."""
+    name = site_response.input_name(column)
+    places = [("input", f"input ({name})"), *([("within", "base (within)")] if column.base else []),
+              ("surface", "surface"), *((z, f"{z:.4g} m") for z in column.motion_depths if z is not None)]
+    rows = []
+    for axis in column.moving:
+        for where, label in places:
+            if isinstance(where, str) and not column.has({"within": "base"}.get(where, where) + f"_a{axis}"):
+                continue
+            a = site_response.intensity_at(column, where, axis)
+            rows.append((label, axis, f"{a['PGA']:.4g}", f"{a['PGA'] / site_response.GRAVITY:.3g}", f"{a['arias']:.4g}",
+                         f"{a['D5_95']:.4g}", f"{a['CAV']:.4g}"))
+    frequency = 0.25 * (len(column.time) - 1) / (column.time[-1] - column.time[0])
+    table = html.table(("Motion", "Along", "PGA (m/s²)", "PGA (g)", "Arias intensity (m/s)", "D5-95 (s)", "CAV (m/s)"),
+                       rows, "motions", numbers=range(2, 7))
+    return [table, html.paragraph(f"Of the rows of the history, which hold frequencies up to {frequency:.3g} Hz.")]
+
+
+def liquefaction(column):
+    """The least factor of safety of each layer with a resistance."""
+    found = site_response.resistance(column)
+    if found is None:
+        return ""
+    depth, csr, crr, safety = found
+    rows = []
+    for k, table in enumerate(column.scene.get("layer", [])):
+        inside = np.flatnonzero((column.layer_at(depth) == k) & np.isfinite(safety))
+        if inside.size:
+            at = inside[np.argmin(safety[inside])]
+            rows.append((name_of(table, k), f"{depth[at]:.4g}",
+                         *(f"{values[at]:.3g}" for values in (csr, crr, safety))))
+    return html.table(("Layer", "Depth of the least (m)", "CSR there", "CRR", "Factor of safety"), rows, "liquefaction",
+                      numbers=range(1, 5))
+
+
+def sections(column):
+    """Of the page; those that the run has nothing for are left out."""
+    shaken = column.shaken and column.moving
+    return [html.section("Soil layers", layers(column), name="layers"),
+            html.section("Site", site(column) if shaken else "", name="site"),
+            html.section("Motions", *(motions(column) if shaken else []), name="motions"),
+            html.section("Resistance to liquefaction", liquefaction(column), name="liquefaction")]
