@@ -54,6 +54,9 @@ constexpr std::array units{
     Unit{"kg/m^3", Dimension::density, 0, 1, false},
     Unit{"g/cm3", Dimension::density, 3},
     Unit{"g/cm^3", Dimension::density, 3, 1, false},
+    Unit{"N/m3", Dimension::unit_weight, 0},
+    Unit{"kN/m3", Dimension::unit_weight, 3},
+    Unit{"kN/m^3", Dimension::unit_weight, 3, 1, false},
     Unit{"min", Dimension::interval, 0},
     Unit{"s", Dimension::interval, 0, 1.0 / 60.0},
     Unit{"h", Dimension::interval, 0, 60},
@@ -175,9 +178,9 @@ std::string format_angle(double tangent)
 
 std::string_view dimension_name(Dimension dimension)
 {
-  constexpr std::array<std::string_view, 12> names{
-      "a length",        "a pressure", "an angle",        "a rate",      "a time",     "a density",
-      "a time interval", "a velocity", "an acceleration", "a frequency", "a duration", "a stress rate"};
+  constexpr std::array<std::string_view, 13> names{
+      "a length",   "a pressure",      "an angle",    "a rate",     "a time",        "a density",    "a time interval",
+      "a velocity", "an acceleration", "a frequency", "a duration", "a stress rate", "a unit weight"};
   return names[static_cast<std::size_t>(dimension)];
 }
 

@@ -19,7 +19,8 @@ enum class Dimension
   acceleration, ///< m/s2, cm/s2 (gal), g     kept in m/s2; g is 9.80665 m/s2
   frequency,    ///< Hz, kHz                  kept in Hz
   duration,     ///< s, ms, min, h, d         kept in s; times from a time step to the years of consolidation
-  stress_rate   ///< Pa/s, kPa/s, MPa/s       kept in Pa/s
+  stress_rate,  ///< Pa/s, kPa/s, MPa/s       kept in Pa/s
+  unit_weight   ///< N/m3, kN/m3              kept in N/m3
 };
 
 /// The unit in which a quantity is shown; without a name: it has no dimension.
@@ -35,8 +36,8 @@ inline constexpr ShownUnit m{Dimension::length, "m"}, mm{Dimension::length, "mm"
     kPa{Dimension::pressure, "kPa"}, MPa{Dimension::pressure, "MPa"}, GPa{Dimension::pressure, "GPa"},
     kPa_s{Dimension::stress_rate, "kPa/s"}, deg{Dimension::angle, "deg"}, per_s{Dimension::rate, "1/s"},
     ns{Dimension::time, "ns"}, s{Dimension::duration, "s"}, ms{Dimension::duration, "ms"},
-    min{Dimension::interval, "min"}, kg_m3{Dimension::density, "kg/m3"}, m_s{Dimension::velocity, "m/s"},
-    m_s2{Dimension::acceleration, "m/s2"}, Hz{Dimension::frequency, "Hz"};
+    min{Dimension::interval, "min"}, kg_m3{Dimension::density, "kg/m3"}, kN_m3{Dimension::unit_weight, "kN/m3"},
+    m_s{Dimension::velocity, "m/s"}, m_s2{Dimension::acceleration, "m/s2"}, Hz{Dimension::frequency, "Hz"};
 } // namespace unit
 
 /// A quantity read from text.

@@ -29,6 +29,8 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
                     fmt::format("print {}: every key of a scene", program.manual_page));
       line.add_flag("--resume", o.resume, "continue from the newest checkpoint, to the same bits")->excludes(overwrite);
     }
+  if (program.mesh_check)
+    line.add_flag("--check-mesh", o.check_mesh, program.mesh_check);
   line.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
   line.add_flag("--no-figures", o.no_figures, "make no figures and no report at the end");
   line.add_option("-t,--threads", o.threads, program.threads_text)->check(CLI::Range(0, 1024));

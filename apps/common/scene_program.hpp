@@ -15,7 +15,7 @@ struct SceneOptions
   std::string scene, output, command_line;
   std::vector<std::string> set;
   bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
-       no_figures = false;
+       no_figures = false, check_mesh = false;
   int threads = 1;
 };
 
@@ -43,7 +43,8 @@ struct SceneProgram
   /// What --help says: the scene, a setting, what threads share; page that --print-manual prints, null: no such option,
   /// and no --resume.
   const char *scene_text, *set_example, *threads_text, *manual_page = nullptr;
-  int threads = 1; ///< default
+  const char *mesh_check = nullptr; ///< what --help says of --check-mesh; null: no such option
+  int threads = 1;                  ///< default
   std::string (*defaults)();
   std::string (*manual)() = nullptr;
   std::string (*resolved)(const std::string &scene, const std::vector<std::string> &overrides);

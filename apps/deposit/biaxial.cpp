@@ -72,6 +72,7 @@ void refuse_beside_block(const SceneDocument &document, const ColumnScene &scene
       {"mesh.distributed", scene.mesh.distributed},
       {"mesh.sides", scene.mesh.sides != Sides::tied},
       {"water.table", scene.water.table > 0},
+      {"water.base", scene.water.drained_base},
       {"slope.angle", scene.slope.tangent > 0},
       {"base.kind", scene.base.compliant()},
       {"motion", !scene.motions.empty()},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rules that bind several keys of a column's scene.
 #include "apps/deposit/box.hpp"
+#include "apps/deposit/default_mesh.hpp"
 #include "apps/deposit/resistance.hpp"
 #include "apps/deposit/slope.hpp"
 #include "base/scene/reader.hpp"
@@ -10,6 +11,7 @@
 #include "fem/solve/newton_scene.hpp"
 #include "fem/water/pore_fluid.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -27,6 +29,9 @@ void check_mesh(const SceneDocument &document, const ColumnScene &scene)
                     "must be 1 if water.drainage is \"undrained\", because only in a column does the "
                     "pore pressure follow from vertical equilibrium. Give drainage = \"coupled\", if need "
                     "be with a permeability of 0 m/s.");
+  if (scene.water.drained_base && scene.water.drainage != Drainage::coupled)
+    document.refuse("water.base",
+                    "has no effect unless water.drainage is \"coupled\": only then water moves. Remove it.");
   if (scene.mesh.distributed && scene.mesh.dimension == 1)
     document.refuse("mesh.distributed", "must be false in a column (dimension 1), which every rank solves as a whole.");
   if (scene.water.lagged_compressibility && scene.water.drainage != Drainage::undrained)
@@ -87,6 +92,39 @@ void check_air(const SceneDocument &document, const ColumnScene &scene)
                     "situ. Remove it.");
 }
 
+/// What follows from other keys where it is not given: densities, K0, the interval of rows.
+void complete(const SceneDocument &document, ColumnScene &scene)
+{
+  const auto weigh = [&](auto &part) {
+    if (part.unit_weight)
+      part.density = *part.unit_weight / scene.water.gravity;
+    part.unit_weight.reset();
+  };
+  weigh(scene.base);
+  for (std::size_t i = 0; i < scene.layers.size(); ++i)
+    {
+      weigh(scene.layers[i]);
+      if (!document.find(fmt::format("layer.{}.k0", i)))
+        scene.layers[i].k0 = scene.layers[i].default_k0();
+    }
+  if (!document.find("output.history_interval"))
+    scene.output.history_interval =
+        std::min(scene.output.history_interval, 0.25 / scene.analysis.highest_frequency); // rows show f up to 1/(4 dt)
+}
+
+/// That of the shear modulus, whose own range says nothing of soil.
+void check_shear_velocity(const SceneDocument &document, const ColumnLayer &layer, const std::string &prefix)
+{
+  const Range range = column_schema().find_key("layer.shear_velocity")->range;
+  if (!layer.shear_modulus)
+    return;
+  if (const double velocity = std::sqrt(*layer.shear_modulus / layer.density); !range.contains(velocity))
+    document.refuse(prefix + ".shear_modulus",
+                    fmt::format("gives a shear-wave velocity sqrt(G/density) of {:.3g} m/s; must be in [{:g} m/s, {:g} "
+                                "m/s]. Check its unit.",
+                                velocity, range.low, range.high));
+}
+
 void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t i)
 {
   if (scene.layers[i].material == LayerMaterial::iwan)
@@ -103,15 +141,24 @@ void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t 
   if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))
     document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water should move.");
+  check_shear_velocity(document, layer, prefix);
+  const bool block = scene.analysis.kind == AnalysisKind::biaxial; // neither K0 nor, dry, water
+  if (block && scene.water.drainage == Drainage::dry && layer.permeability > 0)
+    document.refuse(prefix + ".permeability", "has no effect in a block if water.drainage is \"dry\". Remove it.");
   if (layer.material == LayerMaterial::iwan)
     {
       check_iwan(document, prefix, layer.sand(), layer.sand_density);
       check_resistance(document, scene, i);
     }
+  if (layer.material == LayerMaterial::iwan && !block && !layer.curve.is_given())
+    check_k0(document, prefix, layer.sand(), layer.k0);
   if (layer.material == LayerMaterial::mohr_coulomb)
     check_mohr_coulomb(document, prefix, layer.mohr_coulomb);
   constexpr unsigned most = 1000000;
-  if (layer.cells == 0 && !(layer.thickness / layer.cell_size <= most))
+  if (layer.cells == 0 && layer.cell_size == 0 && !may_choose_cells(scene, layer))
+    document.refuse(prefix, "must have exactly one of cells, cell_size. Give for example cells = 10. Only layers of "
+                            "elastic, iwan and mohr_coulomb may leave them out, and only in a dynamic analysis.");
+  if (layer.cell_size > 0 && !(layer.thickness / layer.cell_size <= most))
     document.refuse(prefix + ".cell_size", fmt::format("would give more than {} cells. Give a larger one.", most));
 }
 
@@ -207,6 +254,8 @@ void check_output(const SceneDocument &document, const ColumnScene &scene)
 void check_column(const SceneDocument &document, ColumnScene &scene)
 {
   check_groups(document, scene);
+  complete(document, scene);
+  find_in_situ_states(scene);
   check_mesh(document, scene);
   check_box(document, scene);
   check_plate(document, scene);

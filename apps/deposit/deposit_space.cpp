@@ -34,6 +34,22 @@ double constrained_modulus(const ColumnScene &scene, const SoilProfile &soil, co
     }
 }
 
+Supports supports_of(const ColumnScene &scene)
+{
+  if (scene.analysis.kind == AnalysisKind::biaxial)
+    return {.fixed = {{Face::base, 2}, {Face::surface, 2}}};
+  Supports supports = shaken_supports(scene.base.compliant(), scene.mesh.sides);
+  if (scene.water.drained_base)
+    supports.drained.push_back(Face::base);
+  if (scene.analysis.kind != AnalysisKind::plate)
+    return supports;
+  supports.fixed.push_back({patch_face(0), scene.plate.axis()});
+  supports.fixed.push_back({patch_face(0), 1}); // plane strain
+  if (scene.plate.rough)
+    supports.fixed.push_back({patch_face(0), 2 - scene.plate.axis()});
+  return supports;
+}
+
 MeshSpec cut_mesh(const ColumnScene &scene, const UserMaterials &user)
 {
   MeshSpec mesh = mesh_spec(scene);
@@ -46,23 +62,9 @@ MeshSpec cut_mesh(const ColumnScene &scene, const UserMaterials &user)
       moduli.push_back(constrained_modulus(scene, mesh.soil, layer, top - layer.thickness / 2, user));
       top -= layer.thickness;
     }
-  const auto planes = drainage_planes(mesh, {Face::surface}, moduli, scene.analysis.first_time);
+  const auto planes = drainage_planes(mesh, supports_of(scene).drained, moduli, scene.analysis.first_time);
   mesh.fine.assign(planes.begin(), planes.end());
   return mesh;
-}
-
-Supports supports_of(const ColumnScene &scene)
-{
-  if (scene.analysis.kind == AnalysisKind::biaxial)
-    return {.fixed = {{Face::base, 2}, {Face::surface, 2}}};
-  Supports supports = shaken_supports(scene.base.compliant(), scene.mesh.sides);
-  if (scene.analysis.kind != AnalysisKind::plate)
-    return supports;
-  supports.fixed.push_back({patch_face(0), scene.plate.axis()});
-  supports.fixed.push_back({patch_face(0), 1}); // plane strain
-  if (scene.plate.rough)
-    supports.fixed.push_back({patch_face(0), 2 - scene.plate.axis()});
-  return supports;
 }
 
 template <int dim>

@@ -31,8 +31,8 @@ constexpr Key keys[] = {
            "times keep the time between them: the earliest first sample is at 0 s, and motions without times start at "
            "0 s of that clock. Samples are 1e-5 s to 10 s apart and within 1e6 m/s2."},
   {.path = "unit", .field = member<&ColumnMotion::unit>, .value = "file", .choices = unit_choices, .kinds = record,
-   .text = "Unit of the accelerations; file: the one that the header of the record states, else g. A unit that "
-           "contradicts the header is refused."},
+   .text = "Unit of the accelerations; file: the one that the header of the record states. A unit that contradicts the "
+           "header is refused, and so are two columns without any unless `peak` is given; AT2 and DEEPSOIL without one are in g."},
   {.path = "baseline", .field = member<&ColumnMotion::baseline>, .value = "none", .choices = baseline_choices,
    .kinds = record,
    .text = "What is subtracted from the accelerations: nothing, their mean, or the quadratic in time that minimises "

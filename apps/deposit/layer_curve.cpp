@@ -26,8 +26,8 @@ constexpr Key in_layer[] = {
    .text = "Modulus reduction and damping that the slip elements follow up to a strain of 1 %, instead of a hyperbola: "
            "\"darendeli\" (2001), \"menq\" (2003), \"vucetic-dobry\" (1991) or \"epri\" (1993, sand), at the mean effective "
            "stress or depth of the middle of the layer; or a CSV file with the columns `strain (-)`, `G/G_max (-)` and, if "
-           "known, `damping (-)`, whose path is like that of `motion.file`. Without `contraction` and `dilation` both are "
-           "0 then."},
+           "known, `damping (-)`, whose path is like that of `motion.file`. Without `contraction`, `dilation` "
+           "and a density both are 0 then."},
   {.path = "plasticity_index", .field = member<&LayerCurve::plasticity_index>, .presence = Presence::optional,
    .value = "20", .range = {0, 200}, .reason = "because no clay in the data is more plastic",
    .text = "Of the curves darendeli and vucetic-dobry, per cent; left out: 0."},
@@ -123,11 +123,8 @@ void check_curve(const SceneDocument &document, ColumnScene &scene, std::size_t 
     document.refuse(prefix + "unloading", "needs the damping of a curve. Give one, or unloading = \"masing\".");
   if (layer.shear_strength && document.find(prefix + "strength_ratio"))
     document.refuse(prefix + "shear_strength", "excludes strength_ratio, which follows from it. Keep one of them.");
-  if (curve.is_given() && layer.sand_density.given())
-    document.refuse(prefix + "curve",
-                    "excludes a resistance by density (n1_60cs, qc1ncs, relative_density), which is that "
-                    "of the hyperbola. Give contraction and dilation, or remove the curve.");
-  if (curve.is_given() && !document.find(prefix + "contraction") && !document.find(prefix + "dilation"))
+  if (curve.is_given() && !layer.sand_density.given() && !document.find(prefix + "contraction") &&
+      !document.find(prefix + "dilation"))
     layer.iwan.contraction = layer.iwan.dilation = 0;
 }
 

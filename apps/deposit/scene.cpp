@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/deposit/scene.hpp"
 
+#include "apps/deposit/default_mesh.hpp"
 #include "apps/deposit/layer_tables.hpp"
 #include "apps/deposit/resistance.hpp"
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
+#include "fem/material/iwan_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +22,6 @@ ColumnScene checked_scene(const SceneDocument &document)
 {
   ColumnScene scene;
   fill_scene(document, scene);
-  find_in_situ_states(scene);
   check_column(document, scene);
   return scene;
 }
@@ -42,6 +43,16 @@ void find_libraries(const SceneDocument &document, const std::string &path, Colu
       library = found_file(document, fmt::format("layer.{}.library", k), path, library);
 }
 
+/// The cells that layers leave out. @param files_found  records can be read; else waves have the highest frequency
+void choose_mesh(const SceneDocument &document, ColumnScene &scene, bool files_found)
+{
+  if (std::ranges::none_of(scene.layers, [](const Layer &layer) { return layer.n_cells() == 0; }))
+    return;
+  const auto is_record = [](const ColumnMotion &motion) { return motion.kind == MotionKind::record; };
+  const bool readable = files_found || std::ranges::none_of(scene.motions, is_record);
+  choose_cells(document, scene, readable ? column_motions(scene) : std::array<Motion, 3>{});
+}
+
 /// Its first sample at t = 0.
 Record motion_of(const ColumnMotion &motion)
 {
@@ -49,7 +60,7 @@ Record motion_of(const ColumnMotion &motion)
     {
     case MotionKind::record:
       {
-        const auto [read, start] = read_record(motion.file, motion.unit);
+        const auto [read, start] = read_record(motion.file, motion.unit, !motion.peak);
         const Motion record = corrected(read, motion.baseline);
         return {motion.peak ? scaled_to_peak(record, *motion.peak) : scaled(record, motion.factor), start};
       }
@@ -95,6 +106,15 @@ MohrCoulombParameters ColumnLayer::frictional_soil() const
   soil.reference_pressure = reference_pressure.value_or(in_situ_pressure);
   soil.poisson_ratio = poisson_ratio;
   return soil;
+}
+
+double ColumnLayer::default_k0() const
+{
+  if (material == LayerMaterial::mohr_coulomb)
+    return 1 - mohr_coulomb.friction / std::hypot(1, mohr_coulomb.friction);
+  if (material == LayerMaterial::iwan)
+    return std::max({1 - iwan.strength_ratio, smallest_k0(0.9 * iwan.strength_ratio), 0.1});
+  return 0.5;
 }
 
 bool ColumnMesh::is_boundary(double x) const
@@ -225,7 +245,9 @@ ColumnScene parse_column_scene(const std::string &text, const std::string &name,
 {
   SceneDocument document(column_schema(), text, name, overrides);
   expand_layer_tables(document, name);
-  return checked_scene(document);
+  ColumnScene scene = checked_scene(document);
+  choose_mesh(document, scene, false);
+  return scene;
 }
 
 ColumnScene read_column_scene(const std::string &path, const std::vector<std::string> &overrides)
@@ -236,6 +258,7 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
   find_motion_files(document, path, scene);
   find_libraries(document, path, scene);
   find_curves(document, path, scene);
+  choose_mesh(document, scene, true);
   if (scene.output.folder.empty())
     scene.output.folder = results_folder(path);
   return scene;

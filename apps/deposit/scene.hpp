@@ -45,9 +45,17 @@ struct ColumnWater : Water
 {
   Drainage drainage = Drainage::coupled;
   double table = 0;                    ///< its depth below the surface, m
+  bool drained_base = false;           ///< water leaves through the base as well
   bool lagged_compressibility = false; ///< undrained only
 
   bool operator==(const ColumnWater &) const = default;
+};
+
+struct ColumnBase : Base
+{
+  std::optional<double> unit_weight; ///< only in files: check_column() makes a density of it, N/m3
+
+  bool operator==(const ColumnBase &) const = default;
 };
 
 enum class LayerMaterial
@@ -67,6 +75,7 @@ inline constexpr const char *drainage_names[] = {"dry", "undrained", "coupled"};
 struct ColumnLayer : Layer
 {
   LayerMaterial material = LayerMaterial::elastic;
+  std::optional<double> unit_weight;                   ///< only in files, as that of ColumnBase
   std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, of a formula
   std::optional<double> reference_pressure;            ///< of that stiffness, Pa; left out: in_situ_pressure
   double in_situ_pressure = 100e3;      ///< p' in the middle of the layer, Pa; follows from the scene when it is read
@@ -86,6 +95,10 @@ struct ColumnLayer : Layer
   double in_situ_modulus() const;                ///< G at in_situ_pressure, Pa
   IwanParameters sand() const;                   ///< `iwan` with the stiffness of the layer
   MohrCoulombParameters frictional_soil() const; ///< `mohr_coulomb` with the stiffness of the layer
+  /// K0 of soil that was never loaded more, 1 - sin(phi) (Jaky 1944): phi the friction angle of mohr_coulomb; of iwan
+  /// sin(phi) = M, as in simple shear between sigma_1 and sigma_3 tau = sin(phi) (sigma_1 + sigma_3)/2 and p' is their
+  /// mean, but at least the K0 that needs nine tenths of M; else 0.5.
+  double default_k0() const;
 
   bool operator==(const ColumnLayer &) const = default;
 };
@@ -217,7 +230,7 @@ struct ColumnScene
   ColumnWater water;
   Slope slope;
   std::vector<ColumnLayer> layers; ///< from the surface down
-  Base base;
+  ColumnBase base;
   std::vector<ColumnMotion> motions; ///< at most one per axis
   ColumnLoad load;
   RveMaterialSettings grains; ///< as the scene says it; ignored without a layer of grains
@@ -255,14 +268,16 @@ MeshSpec mesh_spec(const ColumnScene &scene);
 std::array<Motion, 3> column_motions(const ColumnScene &scene);
 
 /// Reads and checks a scene file of the soil column. A relative motion file is looked for as found_file() does;
-/// an output folder left out becomes results/<scene file name without ending>.
+/// an output folder left out becomes results/<scene file name without ending>, and layers of a dynamic run without
+/// `cells` get them (default_mesh.hpp).
 /// @param overrides  "a.b=c" from --set, as in dem/scene/scene.hpp; `layer.0.thickness=2 m` is the uppermost layer
 /// @throws InputError with file:line (or `--set a.b`), value, allowed range and remedy
 /// tested: tests/apps/deposit/scene_test.cpp, tests/apps/deposit/scene_error_test.cpp
 ColumnScene read_column_scene(const std::string &path, const std::vector<std::string> &overrides = {});
 
 /// The same from text; `name` stands for the file in messages. Motion files are not looked for and keep their path, an
-/// output folder left out stays empty; a `layer.table` is read, as read_column_scene() reads it.
+/// output folder left out stays empty; a `layer.table` is read, as read_column_scene() reads it. Cells left out are
+/// those for analysis.highest_frequency if a motion is a record.
 ColumnScene parse_column_scene(const std::string &text, const std::string &name,
                                const std::vector<std::string> &overrides = {});
 

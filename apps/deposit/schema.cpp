@@ -17,10 +17,12 @@ namespace isostat
 namespace
 {
 constexpr const char *base_choices[] = {"rigid", "compliant"};
+constexpr const char *water_base_choices[] = {"closed", "drained"};
 constexpr const char *load_axes[] = {"x", "y", "z"};
 constexpr const char *load_choices[] = {"none", "step", "harmonic"};
 
 using namespace ranges;
+constexpr const char *because_rock = "because rock is not as light as water, nor as heavy as iron";
 
 constexpr unsigned iwan = kind_bit(LayerMaterial::iwan);
 constexpr unsigned mohr_coulomb = kind_bit(LayerMaterial::mohr_coulomb);
@@ -42,7 +44,7 @@ constexpr Section sections[] = {
            "displacements: docs/theory_column.md, section 8."},
   {.name = "layer",
    .text = "The soil: every `[[layer]]` is one layer, from the surface downwards as a borehole log reads. A key that "
-           "does not belong to the material of its layer is an error. Give exactly one of `cells` and `cell_size`, "
+           "does not belong to the material of its layer is an error. Give at most one of `cells` and `cell_size`, "
            "and, of elastic, iwan and mohr_coulomb, exactly one of `shear_velocity` and `shear_modulus`.",
    .kind_key = "material", .items = items_of<&ColumnScene::layers>, .needed = true,
    .empty_remedy = "Write [[layer]] with its thickness for each layer, from the surface downwards.",
@@ -101,9 +103,13 @@ constexpr Key water_keys[] = {
   {.path = "gravity", .field = member_of<ColumnWater, &ColumnWater::gravity>, .unit = unit::m_s2, .value = "9.81 m/s2",
    .range = positive, .text = "Acceleration of gravity, also for the weight of the soil."},
   {.path = "table", .field = member<&ColumnWater::table>, .unit = unit::m, .value = "0 m", .range = not_negative,
-   .text = "Depth of the water table, on a boundary between elements; only where drainage is \"coupled\". Soil above "
-           "it has neither pore pressure nor buoyancy; its weight follows from the density of its layer, moisture "
-           "included. Less than the height of the soil; 0 m in a box and on a submerged slope."},
+   .text = "Depth of the water table, on a boundary between elements; not where drainage is \"dry\". Soil above "
+           "it has neither pore pressure nor buoyancy, also if drainage is \"undrained\"; its weight follows from the "
+           "density of its layer, moisture included. Less than the height of the soil; 0 m in a box and on a submerged "
+           "slope."},
+  {.path = "base", .field = member<&ColumnWater::drained_base>, .value = "closed", .choices = water_base_choices,
+   .text = "Whether water leaves through the base as well, as into gravel below: its excess pressure is 0 there. "
+           "drained only where drainage is \"coupled\"."},
   {.path = "lagged_compressibility", .field = member<&ColumnWater::lagged_compressibility>, .value = "false",
    .text = "Undrained only: the volume changes by -dp/Q of the previous step, as with water of finite stiffness. The "
            "fluid must be stiffer than the skeleton, K_f/n > M."},
@@ -121,25 +127,36 @@ constexpr Key layer_keys[] = {
    .text = "A CSV file in place of thickness, shear_velocity and density: its rows, from the surface down, become "
            "layers that share all other keys of this one. Its first line names the columns `thickness (m)`, "
            "`shear_velocity (m/s)` and `density (kg/m3)`; others are ignored. The path is like that of `motion.file`."},
-  {.path = "cells", .field = member_of<ColumnLayer, &ColumnLayer::cells>, .presence = Presence::experiment,
-   .value = "10", .range = counts, .reason = one_or_more, .group = "cells", .text = "Elements through the thickness."},
+  {.path = "cells", .field = member_of<ColumnLayer, &ColumnLayer::cells>, .presence = Presence::optional,
+   .value = "10", .range = counts, .reason = one_or_more, .group = "cells",
+   .text = "Elements through the thickness. A layer of elastic, iwan or mohr_coulomb in a dynamic analysis may leave "
+           "out this and `cell_size`: its elements then carry waves of the motion up to `highest_frequency`, at ten "
+           "nodes to a wave of its V_s in situ (0.4 of it in iwan and mohr_coulomb, which soften), and are at most 2 m "
+           "(1 m) high. The resolved scene has the number."},
   {.path = "cell_size", .field = member_of<ColumnLayer, &ColumnLayer::cell_size>, .unit = unit::m,
    .presence = Presence::optional, .value = "0.5 m", .range = positive, .group = "cells",
    .text = "Largest height of an element; the layer gets the fewest elements that respect it. At most 1000000 "
            "elements."},
   {.path = "density", .field = member_of<ColumnLayer, &ColumnLayer::density>, .unit = unit::kg_m3,
-   .value = "2000 kg/m3", .range = positive,
+   .value = "2000 kg/m3", .range = {500, 4000},
+   .reason = "because dry peat is hardly lighter, and soil is not as heavy as ore", .group = "weight",
    .text = "Density of soil and water together; above a water table with its moisture, without water that of dry "
            "soil. Above that of the water where there is any."},
+  {.path = "unit_weight", .field = member<&ColumnLayer::unit_weight>, .unit = unit::kN_m3,
+   .presence = Presence::optional, .value = "18.5 kN/m3", .range = {5e3, 40e3},
+   .reason = "because dry peat is hardly lighter, and soil is not as heavy as ore", .group = "weight",
+   .text = "In place of the density: density times `water.gravity`. The resolved scene has the density."},
   {.path = "porosity", .field = member_of<ColumnLayer, &ColumnLayer::porosity>, .value = "0.4", .range = fraction,
    .reason = "because soil has both grains and pores", .text = "Pore volume over total volume."},
   {.path = "permeability", .field = member_of<ColumnLayer, &ColumnLayer::permeability>, .unit = unit::m_s,
-   .presence = Presence::experiment, .value = "1e-5 m/s", .range = not_negative,
-   .reason = "because water flows down the gradient",
+   .presence = Presence::experiment, .value = "1e-5 m/s", .range = {0, 1},
+   .reason = "because water flows down the gradient, and through gravel no faster",
    .text = "Hydraulic conductivity k; 0 m/s: no water moves. Must be given if the drainage is coupled."},
-  {.path = "k0", .field = member_of<ColumnLayer, &ColumnLayer::k0>, .value = "0.5", .range = {0, 5, true},
-   .reason = "because horizontal stress is compression too, and at 5 soil of 42 deg fails",
-   .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it."},
+  {.path = "k0", .field = member_of<ColumnLayer, &ColumnLayer::k0>, .presence = Presence::optional, .value = "0.5",
+   .range = {0, 5, true}, .reason = "because horizontal stress is compression too, and at 5 soil of 42 deg fails",
+   .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it. Left "
+           "out: 1 - sin(phi) of mohr_coulomb; 1 - `strength_ratio` of iwan, whose sin(phi) in simple shear that is, "
+           "but so that at most 0.9 of the strength is used; else 0.5."},
   {.path = "material", .field = member<&ColumnLayer::material>, .presence = Presence::required, .value = "elastic",
    .choices = material_names,
    .text = "Law of the soil skeleton: linear elastic; parallel slip elements (Iwan) whose stiffness and strength "
@@ -147,8 +164,8 @@ constexpr Key layer_keys[] = {
            "Gauss point, see [grains]; or the user's law, which isostat.column.run() in Python takes by the name of "
            "the layer (docs/python.md), not with mesh.distributed."},
   {.path = "shear_velocity", .field = member<&ColumnLayer::shear_velocity>, .unit = unit::m_s,
-   .presence = Presence::experiment, .value = "200 m/s", .range = {0.1, 1e5},
-   .reason = "because waves in mud are as slow, and in rock not as fast", .kinds = formula, .group = "stiffness",
+   .presence = Presence::experiment, .value = "200 m/s", .range = {1, 6000},
+   .reason = "because waves in mud are as slow, and in no rock as fast", .kinds = formula, .group = "stiffness",
    .text = "Shear-wave velocity V_s at small strain: G = density V_s^2; for iwan and mohr_coulomb at "
            "`reference_pressure`."},
   {.path = "shear_modulus", .field = member<&ColumnLayer::shear_modulus>, .unit = unit::MPa,
@@ -185,14 +202,19 @@ constexpr Key own_sand_key[] = {
 };
 
 constexpr Key base_keys[] = {
-  {.path = "kind", .field = member<&Base::kind>, .value = "rigid", .choices = base_choices,
+  {.path = "kind", .field = member_of<ColumnBase, &Base::kind>, .value = "rigid", .choices = base_choices,
    .text = "rigid: it has the given motion; compliant: elastic rock that absorbs waves (Lysmer dashpot); the motion "
            "is that of its outcrop."},
-  {.path = "density", .field = member<&Base::density>, .unit = unit::kg_m3, .presence = Presence::required,
-   .value = "2300 kg/m3", .range = positive, .kinds = compliant, .text = "Density of the rock."},
-  {.path = "shear_velocity", .field = member<&Base::shear_velocity>, .unit = unit::m_s, .presence = Presence::required,
-   .value = "800 m/s", .range = positive, .kinds = compliant, .text = "Shear-wave velocity in the rock."},
-  {.path = "p_velocity", .field = member<&Base::p_velocity>, .unit = unit::m_s, .presence = Presence::optional,
+  {.path = "density", .field = member_of<ColumnBase, &Base::density>, .unit = unit::kg_m3,
+   .presence = Presence::experiment, .value = "2300 kg/m3", .range = {1000, 5000}, .reason = because_rock,
+   .kinds = compliant, .group = "rock weight", .text = "Density of the rock."},
+  {.path = "unit_weight", .field = member<&ColumnBase::unit_weight>, .unit = unit::kN_m3,
+   .presence = Presence::optional, .value = "23 kN/m3", .range = {10e3, 50e3}, .reason = because_rock,
+   .kinds = compliant, .group = "rock weight", .text = "In place of the density, as that of a layer."},
+  {.path = "shear_velocity", .field = member_of<ColumnBase, &Base::shear_velocity>, .unit = unit::m_s,
+   .presence = Presence::required, .value = "800 m/s", .range = positive, .kinds = compliant,
+   .text = "Shear-wave velocity in the rock."},
+  {.path = "p_velocity", .field = member_of<ColumnBase, &Base::p_velocity>, .unit = unit::m_s, .presence = Presence::optional,
    .value = "1600 m/s", .range = positive, .kinds = compliant,
    .text = "P-wave velocity in the rock; left out: twice the shear velocity. More than 1.155 times the shear velocity."},
 };
@@ -242,7 +264,9 @@ constexpr Key analysis_keys[] = {
   {.path = "mass_damping", .field = member<&ColumnAnalysis::mass_damping>, .unit = unit::per_s, .value = "0 1/s",
    .range = not_negative, .kinds = dynamic,
    .text = "a_M: a force -a_M times mass and velocity; it damps frequency f by the fraction a_M / (4 pi f) of "
-           "critical."},
+           "critical. The velocity is that against a rigid base, but absolute above a compliant one: there it also "
+           "holds back the motion of soil and rock as a whole, and a_M should be far below 2 pi times the lowest "
+           "frequency of interest."},
   {.path = "highest_frequency", .field = member<&ColumnAnalysis::highest_frequency>, .unit = unit::Hz,
    .value = "25 Hz", .range = positive, .kinds = dynamic,
    .text = "Highest frequency of interest. `viscosity` damps what vibrates faster. A warning names elements that are "
@@ -273,7 +297,9 @@ constexpr Key output_keys[] = {
   {.path = "history_interval", .field = member<&ColumnOutput::history_interval>, .unit = unit::s, .value = "0.01 s",
    .range = {0, 10, true}, .reason = "because rows further apart show no shaking",
    .text = "Time between rows of the histories. A time step that is not given divides it; it is rounded to whole steps "
-           "of one that is given, and if it is shorter every step has a row. A consolidation writes every step."},
+           "of one that is given or of a soil with grains, and if it is shorter every step has a row. A consolidation "
+           "writes every step. Left out "
+           "of a dynamic analysis whose `highest_frequency` f is above 25 Hz: 1/(4 f)."},
   {.path = "depths", .field = member<&ColumnOutput::depths>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
    .text = "Depths below the surface at which stress paths and motions are recorded. Within the soil."},
@@ -295,10 +321,10 @@ constexpr Key output_keys[] = {
    .text = "Damping of the oscillators of response spectra."},
 };
 
-constexpr KeyGroup groups[] = {{"cells", "cells = 10"}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}, {"resistance"}};
+constexpr KeyGroup groups[] = {{"cells"}, {"weight"}, {"rock weight", "density = \"2300 kg/m3\""}, {"stiffness", "shear_velocity = \"200 m/s\""}, {"scale"}, {"resistance"}};
 
 using enum Dimension;
-constexpr Dimension dimensions[] = {length, pressure, angle, rate, density, velocity, acceleration, frequency, duration, interval};
+constexpr Dimension dimensions[] = {length, pressure, angle, rate, density, unit_weight, velocity, acceleration, frequency, duration, interval};
 
 constexpr const char *defaults_head =
     "A soil column with the defaults of every key. A line \"# key = value\" is a key without default, with an example. "

@@ -118,8 +118,9 @@ std::array<double, 2> nearest_boundary(const ColumnScene &scene, double depth)
   double top = 0;
   for (const ColumnLayer &layer : scene.layers)
     {
-      for (unsigned k = 1; k <= layer.n_cells(); ++k)
-        if (const double z = top + layer.thickness * k / layer.n_cells(); std::abs(z - depth) < best[0])
+      const unsigned n = std::max(1u, layer.n_cells());
+      for (unsigned k = 1; k <= n; ++k)
+        if (const double z = top + layer.thickness * k / n; std::abs(z - depth) < best[0])
           best = {std::abs(z - depth), z};
       top += layer.thickness;
     }
@@ -131,11 +132,18 @@ void check_table(const SceneDocument &document, const ColumnScene &scene)
   const double table = scene.water.table;
   if (table == 0)
     return;
-  if (scene.water.drainage != Drainage::coupled)
-    document.refuse("water.table",
-                    fmt::format("has no meaning if water.drainage is \"{}\". Give drainage = \"coupled\" (with a "
-                                "permeability of 0 m/s if no water should move), or remove it.",
-                                drainage_names[static_cast<int>(scene.water.drainage)]));
+  if (scene.water.drainage == Drainage::dry)
+    document.refuse("water.table", "has no meaning if water.drainage is \"dry\". Give drainage = \"undrained\" or "
+                                   "\"coupled\", or remove it.");
+  double top = 0; // depth
+  for (const ColumnLayer &layer : scene.layers)
+    {
+      if (layer.material == LayerMaterial::grains && scene.water.drainage == Drainage::undrained && top < table - near)
+        document.refuse("water.table", "must not be below the top of packings if water.drainage is \"undrained\", as "
+                                       "packings then keep their volume. Give drainage = \"coupled\" with a "
+                                       "permeability of 0 m/s.");
+      top += layer.thickness;
+    }
   if (scene.slope.water == SlopeWater::submerged)
     document.refuse("water.table", "must be 0 m if slope.water is \"submerged\": the water is above the surface. "
                                    "Remove one of them.");
@@ -143,7 +151,10 @@ void check_table(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("water.table", fmt::format("must be less than the height of the soil, {} m. Give drainage = "
                                                "\"dry\" if there is no water.",
                                                number_text(scene.height())));
-  if (const auto [distance, boundary] = nearest_boundary(scene, table); distance > near)
+  const SoilProfile soil = soil_profile(scene);
+  const bool has_cells =
+      soil.layers[soil.layer_at(soil.height() - table)].n_cells() > 0; // else choose_cells() minds it
+  if (const auto [distance, boundary] = nearest_boundary(scene, table); has_cells && distance > near)
     document.refuse("water.table", fmt::format("must be on a boundary between elements, of which the nearest is at {} "
                                                "m. Give that, or end a layer at the table.",
                                                number_text(boundary)));

@@ -190,19 +190,6 @@ std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n
   return layer.material == LayerMaterial::user ? user.at(layer.name)(n_points) : formula_material(layer, n_points);
 }
 
-std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points)
-{
-  if (layer.material == LayerMaterial::mohr_coulomb)
-    return std::make_unique<MohrCoulomb>(layer.frictional_soil(), n_points);
-  return damped_material(layer, n_points);
-}
-
-Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0, double z)
-{
-  const auto [normal, shear] = soil.in_situ(z, scene.load.surcharge);
-  return {-k0 * normal, -k0 * normal, -normal, 0, shear, 0};
-}
-
 std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &mesh)
 {
   if (scene.analysis.kind == AnalysisKind::biaxial)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // tested: tests/apps/soil_column_test.py, tests/apps/grain_column_test.py
 #pragma once
-#include "apps/deposit/scene.hpp"
+#include "apps/deposit/formula_soil.hpp"
 #include "base/stopwatch.hpp"
 #include "coupling/batch/rve_material.hpp"
 #include "fem/material/composite.hpp"
@@ -64,12 +64,6 @@ SpecimenRequest drawn(SpecimenRequest request, const Place &place);
 /// The material of one layer that is not of grains, without stress.
 /// @throws std::out_of_range  a user's material that is missing
 std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user);
-/// The material of one layer from a formula, without stress.   @pre layer.material is elastic, iwan or mohr_coulomb
-std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points);
-
-/// Stress in situ at a height of a layer between faces that are parallel: its weight, and K0 times that. Pa, tension
-/// positive
-Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0, double z);
 /// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally
 /// K0 times as much. Between walls that is where settle() begins, without a surcharge
 /// on a part of the surface. A biaxial block has its confinement everywhere.

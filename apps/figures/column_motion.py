@@ -68,7 +68,8 @@ def column_spectrum(column, where, axis):
 def spectra(column):
     """Response spectra (absolute acceleration SA; spectra.csv has the pseudo-acceleration PSA, too) of input and
     surface from every step and, thin, at the output depths from the rows of the history, and the ratio of surface and
-    input (dashed: 1); grey: periods that belong to frequencies above analysis.highest_frequency."""
+    input (dashed: 1); grey: periods that belong to frequencies above analysis.highest_frequency, or to what
+    depends on the mesh (--check-mesh)."""
     axes_moving = [axis for axis in column.moving if column.has(f"surface_a{axis}")]
     if column.consolidation or not axes_moving:
         return None
@@ -87,7 +88,7 @@ def spectra(column):
         bottom.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)
         top.set_title(f"along ${axis}$", loc="right", fontsize=9, pad=5)
     letters(panels)
-    finish_spectra(panels, column.spectrum_damping, column.damping["viscous_above"])
+    finish_spectra(panels, column.spectrum_damping, min(column.damping["viscous_above"], column.mesh_frequency))
     return figure
 
 
@@ -102,7 +103,7 @@ def draw_depths(column, axes, axis):
 
 
 def finish_spectra(panels, damping, highest_frequency):
-    """Grey: periods of what is above the highest frequency of interest."""
+    """Grey: periods of what is above the highest frequency of interest, or depends on the mesh."""
     for axes in panels.flat:
         axes.axvspan(PERIODS[0], max(PERIODS[0], 1 / highest_frequency), color="#eeeeee", zorder=0)
         axes.set(xscale="log", xlim=(PERIODS[0], PERIODS[-1]), ylim=(0, None))

@@ -50,7 +50,7 @@ public:
       {
         start();
         for (const std::string &warning : warnings_)
-          if (!resumed_ && ranks().first())
+          if (request_.warns && !resumed_ && ranks().first())
             warn(warning);
         soil_.material->seconds = 0;
         while (failure_.empty() && !is_done())

@@ -20,7 +20,7 @@ public:
   ColumnRun(const ColumnRequest &request, const std::array<Motion, 3> &motions, const Settings &settings)
       : Run(request, settings), motions_(motions),
         files_(request.folder, scene_, space_, motions_, steps_between_rows()),
-        follower_(space_, files_.line(), files_.history().vertical_stress()),
+        follower_(space_, files_.line(), files_.history().vertical_stress(), run_.stresses()),
         velocities_(shear_velocities(scene_, *soil_.material, space_))
   {
     if constexpr (std::is_same_v<Solver, Dynamics>)

@@ -15,7 +15,8 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
 {
   DynamicsSettings settings;
   settings.time_step = scene.analysis.time_step.value_or(0);
-  settings.multiple = scene.output.history_interval;
+  if (!scene.has_grains()) // of which up to half as many steps again would be expensive
+    settings.multiple = scene.output.history_interval;
   settings.safety = scene.analysis.safety;
   settings.mass_damping = scene.analysis.mass_damping;
   settings.viscosity = scene.analysis.viscosity;
@@ -141,6 +142,13 @@ private:
   {
     summary.time_step = run_.time_step();
     summary.bands = motion_.bands();
+    const ColumnLine *line = files_.line();
+    summary.waves = carried_waves(scene_, velocities_,
+                                  line ? softened_velocities(scene_, velocities_, space_, *line, follower_.peaks)
+                                       : std::vector<double>(),
+                                  space_);
+    if (std::string coarse = softened_elements(scene_, summary.waves, motions_); !coarse.empty())
+      summary.warnings.push_back(std::move(coarse));
     if (!grain_files_)
       return;
     const auto n_packings = soil_.grains->owners().size();

@@ -15,6 +15,7 @@
 //   isostat ensemble apps/scenes/column/quick_ensemble.toml -n 8 -j 2            as often with other packings: bands
 #include "apps/deposit/inputs.hpp"
 #include "apps/deposit/ranks.hpp"
+#include "apps/soil_column/mesh_check.hpp"
 #include "apps/soil_column/run.hpp"
 #include "base/error.hpp"
 
@@ -49,7 +50,11 @@ void run_scene(const SceneOptions &options)
   const char *figures_of = request.scene.analysis.kind == AnalysisKind::biaxial ? "biaxial" : "soil_column";
   if (has_finished(request.folder, request.use, to_toml(request.scene)))
     return tell_of_finished(request.folder, figures_of, !options.no_figures);
-  const RunResult result = run_column(request);
+  if (options.check_mesh && request.scene.analysis.kind != AnalysisKind::dynamic)
+    throw InputError("--check-mesh belongs to a dynamic analysis. Leave it out.");
+  RunResult result = run_column(request);
+  if (options.check_mesh)
+    check_mesh(request, result);
   if (ranks().first())
     leave_summary(request.folder, result.summary.text(), to_text(result.times), figures_of, !options.no_figures);
   if (!result.failure.empty())
@@ -66,6 +71,7 @@ constexpr SceneProgram soil_column{
     .threads_text = "threads of each rank that share its packings of grains, 0: all the process may use; results do "
                     "not depend on it",
     .manual_page = "docs/column_scene_reference.md",
+    .mesh_check = "dynamic: run with half the elements, too, and state what differs",
     .defaults = default_column_scene,
     .manual = column_scene_manual,
     .resolved = validated,

@@ -55,22 +55,24 @@ void ColumnPeaks::restore(const ColumnCheckpoint &checkpoint)
 }
 
 PeakFollower::PeakFollower(const FiniteElementSpace &space, const ColumnLine *line,
-                           const std::vector<double> &vertical_stress)
+                           const std::vector<double> &vertical_stress, std::span<const Stress> in_situ)
     : space_(space), line_(line), vertical_stress_(vertical_stress)
 {
   for (unsigned c = 0; c < 2; ++c)
     surface_[c] = space.find_dof(space.mesh().on_line(0), c);
   if (line)
     {
-      peaks.line_gamma.assign(line->points.size(), 0.0);
-      peaks.line_ru.assign(line->points.size(), 0.0);
-      peaks.line_tau.assign(line->points.size(), 0.0);
+      for (std::vector<double> *of_points : {&peaks.line_gamma, &peaks.line_ru, &peaks.line_tau, &peaks.line_secant})
+        of_points->assign(line->points.size(), 0.0);
+      for (std::size_t q : line->points)
+        shear_in_situ_.push_back({in_situ[q][4], in_situ[q][3]});
       for (std::vector<double> *of_nodes : {&peaks.line_acceleration, &peaks.line_velocity, &peaks.line_displacement})
         of_nodes->assign(line->nodes.size(), 0.0);
     }
 }
 
-void PeakFollower::follow(const Vector &displacement, const std::vector<double> &pressure, double time)
+void PeakFollower::follow(const Vector &displacement, const std::vector<double> &pressure, double time,
+                          std::span<const Stress> stresses)
 {
   gradients_of(space_, displacement, gradients_);
   const auto depth = [&](std::size_t q) { return space_.mesh().depth(space_.position[q]); };
@@ -89,7 +91,11 @@ void PeakFollower::follow(const Vector &displacement, const std::vector<double> 
     for (std::size_t k = 0; k < line_->points.size(); ++k)
       {
         const std::size_t q = line_->points[k];
-        raise_shear(peaks.line_gamma[k], gradients_[q]);
+        if (raise_shear(peaks.line_gamma[k], gradients_[q]))
+          {
+            const auto &[xz, yz] = shear_in_situ_[k];
+            peaks.line_secant[k] = std::hypot(stresses[q][4] - xz, stresses[q][3] - yz) / peaks.line_gamma[k];
+          }
         peaks.line_ru[k] = std::max(peaks.line_ru[k], pressure[q] / vertical_stress_[q]);
       }
 }
@@ -98,7 +104,7 @@ void PeakFollower::follow(const Dynamics &run)
 {
   const bool coupled = run.settings().drainage == Drainage::coupled;
   const double now = run.time() - run.time_step(); // what accelerations are of
-  follow(run.displacement(), run.point_pressure(), coupled ? now : run.time());
+  follow(run.displacement(), run.point_pressure(), coupled ? now : run.time(), run.stresses());
   const auto &motion = run.settings().motion;
   const double ax = motion[0].acceleration(now), ay = motion[1].acceleration(now);
   const bool absolute = run.settings().base.compliant();

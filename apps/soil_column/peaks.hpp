@@ -16,7 +16,8 @@ struct ColumnPeaks
   double gamma = 0, gamma_depth = 0;        ///< sqrt(gamma_xz^2 + gamma_yz^2) [-]; m
   double ru = 0, ru_depth = 0, ru_time = 0; ///< [-], m, s
   std::vector<double> line_gamma, line_ru;  ///< at the points of a ColumnLine; empty if the mesh is shared out
-  std::vector<double> line_tau;             ///< likewise sqrt(tau_xz^2 + tau_yz^2), Pa; 0 unless it is shaken
+  std::vector<double> line_secant; ///< likewise: change of shear stress over strain where that is largest, Pa; 0: none
+  std::vector<double> line_tau;    ///< likewise sqrt(tau_xz^2 + tau_yz^2), Pa; 0 unless it is shaken
   // Likewise at its nodes, horizontal by size: m/s2; m/s and m as the unknowns count (from a rigid base).
   std::vector<double> line_acceleration, line_velocity, line_displacement;
 
@@ -31,6 +32,7 @@ struct ColumnPeaks
   static void for_each_line(Peaks &p, const Visit &visit)
   {
     visit("peak_gamma", p.line_gamma), visit("peak_line_ru", p.line_ru), visit("peak_tau", p.line_tau);
+    visit("peak_secant", p.line_secant);
     visit("peak_acceleration", p.line_acceleration), visit("peak_velocity", p.line_velocity);
     visit("peak_displacement", p.line_displacement);
   }
@@ -43,11 +45,14 @@ class PeakFollower
 {
 public:
   /// @param line  null: the mesh is shared out   @param vertical_stress  sigma'_v0 of every point, Pa
-  PeakFollower(const FiniteElementSpace &space, const ColumnLine *line, const std::vector<double> &vertical_stress);
+  /// @param in_situ  stress of every point at the start, Pa
+  PeakFollower(const FiniteElementSpace &space, const ColumnLine *line, const std::vector<double> &vertical_stress,
+               std::span<const Stress> in_situ);
   /// After each step.
   void follow(const Dynamics &run);
   /// Strain and r_u of any solution.
-  void follow(const Vector &displacement, const std::vector<double> &pressure, double time);
+  void follow(const Vector &displacement, const std::vector<double> &pressure, double time,
+              std::span<const Stress> stresses);
   /// Largest over all ranks.   Collective.
   void gather();
 
@@ -60,6 +65,7 @@ private:
   const FiniteElementSpace &space_;
   const ColumnLine *line_;
   const std::vector<double> &vertical_stress_;
+  std::vector<std::array<double, 2>> shear_in_situ_; ///< sigma_xz, sigma_yz at the points of the line
   std::array<long, 2> surface_;
   std::vector<Gradient> gradients_;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/resolution.hpp"
 
+#include "apps/deposit/plausible.hpp"
 #include "dem/prepare/relative_density.hpp"
-#include "fem/motion/low_pass.hpp"
 #include "fem/water/drainage.hpp"
 
 #include <algorithm>
@@ -33,18 +33,11 @@ std::vector<double> slowest_waves(const ColumnScene &scene, const std::vector<do
   return slowest;
 }
 
-/// Share of a motion's squared acceleration above a frequency.
-double share_above(const Motion &motion, double frequency)
+/// The highest frequency of the horizontal motions that is of interest, Hz; 0: nothing moves.
+double frequency_of_interest(const ColumnScene &scene, const std::array<Motion, 3> &motions)
 {
-  LowPass filter(frequency, motion.interval());
-  double all = 0, low = 0;
-  for (double a : motion.accelerations())
-    {
-      const double below = filter(a);
-      all += a * a;
-      low += below * below;
-    }
-  return all > 0 ? 1 - low / all : 0;
+  const double limit = scene.analysis.highest_frequency;
+  return std::max(highest_frequency(motions[0], limit), highest_frequency(motions[1], limit));
 }
 
 /// Time of the last sample that is not 0, s.
@@ -55,11 +48,14 @@ double end_of_shaking(const Motion &motion)
   return motion.duration() - static_cast<double>(last - a.rbegin()) * motion.interval();
 }
 
-/// Whether a motion that ends with a velocity has gone far, or very far without.
-bool drifts(const Motion &motion)
+/// Whether a motion that ends with a velocity has gone far, or very far without; a sine, whose velocity may be 0 at its
+/// end all the same, four times as far as its amplitude A/omega^2 (one cycle: 2 pi).
+bool drifts(const Motion &motion, const ColumnMotion &asked)
 {
   constexpr double share = 0.05, far = 0.3, very_far = 10; // of the largest velocity, m, m
   const double end = motion.duration(), way = std::abs(motion.displacement(end));
+  if (asked.kind == MotionKind::harmonic)
+    return way > 4 * motion.peak() / std::pow(2 * std::numbers::pi * asked.frequency, 2);
   double fastest = 0;
   for (std::size_t i = 0; i < motion.accelerations().size(); ++i)
     fastest = std::max(fastest, std::abs(motion.velocity(motion.delay() + static_cast<double>(i) * motion.interval())));
@@ -78,8 +74,8 @@ std::string coarse_skin(const ColumnScene &scene, const DrainageBound &bound)
       "moves the water there: sqrt(2 c/omega) = {:.3g} m (c = {:.3g} m2/s), and pore pressures are within 2 % only "
       "with cells of {:.2f} of it. Set layer.{}.cell_size to {:.2g} m or less, or disregard pore pressures within "
       "three cells, {:.3g} m, of where water drains.",
-      bound.layer, layer.name.empty() ? "" : " (" + layer.name + ")", bound.cell, scene.load.frequency, skin,
-      bound.coefficient, cells_per_skin, bound.layer, cells_per_skin * skin, 3 * bound.cell);
+      bound.layer, quoted_name(layer), bound.cell, scene.load.frequency, skin, bound.coefficient, cells_per_skin,
+      bound.layer, cells_per_skin * skin, 3 * bound.cell);
 }
 } // namespace
 
@@ -96,7 +92,7 @@ std::vector<std::string> motion_warnings(const ColumnScene &scene, const std::ar
         warnings.push_back(fmt::format("the analysis ends at {:.4g} s, before the motion along {}, which lasts until "
                                        "{:.4g} s. Set analysis.duration to that or more to include all of it.",
                                        scene.analysis.duration, axis, end));
-      if (drifts(motion))
+      if (drifts(motion, asked))
         warnings.push_back(fmt::format(
             "the motion along {} ends {:.3g} m from where it began, with {:.3g} m/s: its baseline drifts. {}", axis,
             std::abs(motion.displacement(motion.duration())), motion.velocity(motion.duration()),
@@ -115,22 +111,6 @@ std::vector<std::string> motion_warnings(const ColumnScene &scene, const std::ar
   return warnings;
 }
 
-double highest_frequency(const Motion &motion, double limit)
-{
-  constexpr double share = 0.01;
-  if (motion.at_rest())
-    return 0;
-  if (share_above(motion, limit) > share)
-    return limit;
-  double low = 0, high = limit;
-  for (int k = 0; k < 40; ++k)
-    {
-      const double middle = (low + high) / 2;
-      (share_above(motion, middle) > share ? low : high) = middle;
-    }
-  return high;
-}
-
 std::vector<double> shear_velocities(const ColumnScene &scene, const Material &material, const CellTables &mesh)
 {
   std::vector<WaveModuli> moduli(material.n_points());
@@ -144,11 +124,59 @@ std::vector<double> shear_velocities(const ColumnScene &scene, const Material &m
   return velocities;
 }
 
+std::vector<CarriedWaves> carried_waves(const ColumnScene &scene, const std::vector<double> &velocities,
+                                        const std::vector<double> &softened, const CellTables &mesh)
+{
+  const std::vector<double> start = slowest_waves(scene, velocities, mesh),
+                            end = softened.empty() ? softened : slowest_waves(scene, softened, mesh);
+  std::vector<CarriedWaves> waves;
+  for (std::size_t k = 0; k < start.size(); ++k)
+    {
+      const double height = scene.layers[k].thickness / scene.layers[k].n_cells(),
+                   per_velocity = scene.mesh.degree / (nodes_per_wave * height);
+      waves.push_back({height, start[k] * per_velocity, {}});
+      if (!end.empty())
+        waves.back().softened = end[k] * per_velocity;
+    }
+  return waves;
+}
+
+std::vector<double> softened_velocities(const ColumnScene &scene, std::vector<double> velocities,
+                                        const CellTables &mesh, const ColumnLine &line, const ColumnPeaks &peaks)
+{
+  for (std::size_t k = 0; k < line.points.size(); ++k)
+    if (const std::size_t q = line.points[k]; peaks.line_secant[k] > 0)
+      velocities[q] =
+          std::min(velocities[q],
+                   std::sqrt(peaks.line_secant[k] / scene.layers[mesh.cell_layer[q / mesh.points_per_cell()]].density));
+  return velocities;
+}
+
+std::string softened_elements(const ColumnScene &scene, const std::vector<CarriedWaves> &waves,
+                              const std::array<Motion, 3> &motions)
+{
+  constexpr double enough = 0.25;
+  const double frequency = frequency_of_interest(scene, motions);
+  std::size_t worst = 0;
+  for (std::size_t k = 0; k < waves.size(); ++k)
+    if (waves[k].softened.value_or(frequency) < waves[worst].softened.value_or(frequency))
+      worst = k;
+  const double carried = waves[worst].softened.value_or(frequency);
+  if (carried >= enough * frequency)
+    return "";
+  const Layer &layer = scene.layers[worst];
+  return fmt::format(
+      "the soil of layer.{}{} became so soft that its elements, {:.3g} m high, carried waves up to {:.3g} "
+      "Hz only ({} nodes to a wave), and {:.3g} Hz are of interest. See with --check-mesh what depends "
+      "on it, or set layer.{}.cells to {:.0f} or more.",
+      worst, quoted_name(layer), waves[worst].height, carried, nodes_per_wave, frequency, worst,
+      std::ceil(layer.n_cells() * enough * frequency / carried));
+}
+
 std::string coarse_elements(const ColumnScene &scene, const std::vector<double> &velocities, const CellTables &mesh,
                             const std::array<Motion, 3> &motions)
 {
-  const double limit = scene.analysis.highest_frequency,
-               frequency = std::max(highest_frequency(motions[0], limit), highest_frequency(motions[1], limit));
+  const double frequency = frequency_of_interest(scene, motions);
   const std::vector<double> slowest = slowest_waves(scene, velocities, mesh);
   std::size_t worst = 0;
   double fewest = std::numeric_limits<double>::max();
@@ -163,11 +191,10 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
     return "";
   return fmt::format(
       "the elements of layer.{}{} are too long for the shortest wave of interest: {:.1f} nodes in {:.3g} m ({:.3g} m/s "
-      "at "
-      "{:.3g} Hz), {} are needed. Set layer.{}.cells to {:.0f} or more, or analysis.highest_frequency to what matters.",
-      worst, scene.layers[worst].name.empty() ? "" : " (" + scene.layers[worst].name + ")", fewest,
-      slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave, worst,
-      std::ceil(scene.layers[worst].n_cells() * nodes_per_wave / fewest));
+      "at {:.3g} Hz), {} are needed. Set layer.{}.cells to {:.0f} or more, or analysis.highest_frequency to what "
+      "matters.",
+      worst, quoted_name(scene.layers[worst]), fewest, slowest[worst] / frequency, slowest[worst], frequency,
+      nodes_per_wave, worst, std::ceil(scene.layers[worst].n_cells() * nodes_per_wave / fewest));
 }
 
 std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &space, const Material &material)
@@ -191,14 +218,17 @@ std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &
       "the cells of {}{} where water drains, {:.3g} m high, show pore pressure and settlement within 2 % "
       "only from 1.5 h2/c = {:.3g} s after the load on (c = {:.3g} m2/s); before h2/(6 c) = {:.3g} s the "
       "pressure oscillates there. Set {}{} to {:.3g} s or more, or disregard what is earlier.",
-      where, layer.name.empty() ? "" : " (" + layer.name + ")", bound.cell, bound.time, bound.coefficient,
-      bound.time / 9, finer, slow ? "analysis.first_time" : "load.ramp", bound.time);
+      where, quoted_name(layer), bound.cell, bound.time, bound.coefficient, bound.time / 9, finer,
+      slow ? "analysis.first_time" : "load.ramp", bound.time);
 }
 
 std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<double> &velocities,
                                         const CellTables &mesh, const std::array<Motion, 3> &motions)
 {
-  std::vector<std::string> warnings = motion_warnings(scene, motions);
+  std::vector<std::string> warnings = profile_warnings(scene);
+  for (const std::vector<std::string> &of_motions :
+       {motion_size_warnings(scene, motions), motion_warnings(scene, motions)})
+    warnings.insert(warnings.end(), of_motions.begin(), of_motions.end());
   if (std::string coarse = coarse_elements(scene, velocities, mesh, motions); !coarse.empty())
     warnings.push_back(std::move(coarse));
   if (const double step = scene.analysis.time_step.value_or(0), steps = scene.output.history_interval / step;

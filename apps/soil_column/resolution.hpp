@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "apps/deposit/scene.hpp"
+#include "apps/deposit/default_mesh.hpp"
+#include "apps/soil_column/peaks.hpp"
 #include "fem/material/material.hpp"
 #include "fem/space/discretisation.hpp"
 
@@ -10,17 +11,35 @@
 
 namespace isostat
 {
-/// Nodes that a wave length needs, lest the mesh holds the wave back or swallows it (Kuhlemeyer & Lysmer 1973, J. Soil
-/// Mech. Found. Div. 99, 421: eight to twelve).
-inline constexpr double nodes_per_wave = 10;
-
-/// The frequency above which a hundredth of the motion's squared acceleration lies (LowPass), at most `limit`; 0 at
-/// rest. Hz   cost: 40 passes over the samples     tested: tests/apps/soil_column_test.py
-double highest_frequency(const Motion &motion, double limit);
-
 /// Velocity sqrt(G/rho) of shear waves at every point of this rank, of the material's present stiffness and the density
 /// of its layer, m/s.   Collective.     tested: tests/apps/soil_column_test.py
 std::vector<double> shear_velocities(const ColumnScene &scene, const Material &material, const CellTables &mesh);
+
+/// What the elements of a layer carry: waves of a frequency with nodes_per_wave nodes to their length, of the shear
+/// wave of the layer's slowest cell.
+struct CarriedWaves
+{
+  double height = 0;                   ///< of an element, m
+  double at_start = 0;                 ///< Hz
+  std::optional<double> softened = {}; ///< with the secant stiffness at the largest strain of each point, Hz
+};
+
+/// Those of each layer.   Collective.
+/// @param velocities  shear_velocities() at the start
+/// @param softened  the same with secants (softened_velocities()); empty: not known
+/// tested: tests/apps/column_mesh_test.py
+std::vector<CarriedWaves> carried_waves(const ColumnScene &scene, const std::vector<double> &velocities,
+                                        const std::vector<double> &softened, const CellTables &mesh);
+
+/// sqrt(G_sec/rho) at every point of the line of a run that has ended, where that is below its velocity at the start;
+/// elsewhere the latter. m/s
+std::vector<double> softened_velocities(const ColumnScene &scene, std::vector<double> velocities,
+                                        const CellTables &mesh, const ColumnLine &line, const ColumnPeaks &peaks);
+
+/// The layer that carried least in comparison with what is asked of it, if it carried less than a quarter of that
+/// (measured: docs/column.md).   @return empty  all carried enough     tested: tests/apps/column_mesh_test.py
+std::string softened_elements(const ColumnScene &scene, const std::vector<CarriedWaves> &waves,
+                              const std::array<Motion, 3> &motions);
 
 /// What is wrong with a mesh whose elements are too long for the shortest wave of interest: the layer with the fewest
 /// nodes per wave length, and the number of cells it should have. The nodes are p n V_s/(H f) for n cells of degree p

@@ -10,6 +10,7 @@ struct ColumnRequest : RunRequest<ColumnScene>
 {
   using RunRequest::RunRequest;
   UserMaterials materials; ///< of layers whose material is user
+  bool warns = true;       ///< on stderr; the summary has warnings anyway
 };
 
 /// What the run took on this machine.

@@ -25,7 +25,7 @@ protected:
     gradients_of(space_, u, instant_.gradients);
     instant_.stresses.assign(run_.stresses().begin(), run_.stresses().end());
     instant_.pressure = run_.point_pressure();
-    follower_.follow(u, instant_.pressure, run_.time());
+    follower_.follow(u, instant_.pressure, run_.time(), instant_.stresses);
     write([&] {
       files_.record(instant_);
       files_.write_rows();

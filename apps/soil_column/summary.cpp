@@ -119,6 +119,23 @@ void add_grains(const GrainsSummary &g, Summary &summary)
               Value{"min_redundancy_time", g.min_redundancy_time}, index_name(static_cast<int>(g.constraints)));
 }
 
+/// What the elements of each layer carry.
+void add_waves(const ColumnSummary &s, const ColumnScene &scene, Summary &summary)
+{
+  for (std::size_t k = 0; k < s.waves.size(); ++k)
+    {
+      const ColumnLayer &layer = scene.layers[k];
+      const auto &[height, at_start, softened] = s.waves[k];
+      summary.row(k == 0 ? "waves carried" : " ", "{}: {} elements of {:.3g} m, up to {:.3g} Hz at the start{}",
+                  layer.name.empty() ? fmt::format("layer {}", k) : layer.name, layer.n_cells(), height, at_start,
+                  softened ? fmt::format(", {:.3g} Hz where softest", *softened) : "");
+      summary["layers"][k].update({{"cells", layer.n_cells()},
+                                   {"element_height", height},
+                                   {"carried_frequency", at_start},
+                                   {"softened_frequency", softened ? Json(*softened) : Json()}});
+    }
+}
+
 /// What needs no row, and the first rows.
 void add_scene(const ColumnSummary &s, const ColumnScene &scene, Summary &summary)
 {
@@ -139,6 +156,7 @@ void add_scene(const ColumnSummary &s, const ColumnScene &scene, Summary &summar
   add_velocities(scene, summary);
   summary.row("mesh", "{} elements, {} points, dimension {}", Value{"elements", s.cells}, Value{"points", s.points},
               Value{"dimension", scene.mesh.dimension});
+  add_waves(s, scene, summary);
 }
 
 /// Time, and the motion of input and surface.

@@ -4,6 +4,7 @@
 #include "apps/soil_column/history.hpp"
 #include "apps/soil_column/peaks.hpp"
 #include "apps/soil_column/plate_forces.hpp"
+#include "apps/soil_column/resolution.hpp"
 #include "apps/soil_column/spreading.hpp"
 #include "apps/soil_column/surface_motion.hpp"
 
@@ -38,6 +39,7 @@ struct ColumnSummary
   ColumnState last;                        ///< of the last row
   std::vector<CapExpansion> expansions;    ///< under layers that are less permeable than what is below
   double final_settlement = 0, degree = 0; ///< consolidation: when all water has left, m; part of it reached [-]
+  std::vector<CarriedWaves> waves;         ///< of each layer of a dynamic run
   std::optional<GrainsSummary> grains;
   std::optional<Spreading> spreading;  ///< none on level ground
   std::optional<BoxMotion> box_motion; ///< of a box alone

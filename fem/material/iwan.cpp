@@ -55,8 +55,9 @@ Iwan::Iwan(const IwanParameters &p, std::size_t n_points) : Iwan(p, fit_hyperbol
 Iwan::Iwan(const IwanParameters &p, const Backbone &b, std::span<const double> numbers, std::size_t n_more,
            std::size_t n_points)
     : RowMaterial("iwan", checked_numbers(p, numbers), n_points,
-                  elements + 5 * padded(p.elements) + reconsolidating(p) + n_more),
-      parameters_(p), width_(padded(p.elements)), stride_(elements + 5 * width_ + reconsolidating(p) + n_more),
+                  elements + 5 * padded(p.elements) + (p.reconsolidation > 0 ? std::size_t(n_reconsolidation) : 0) +
+                      n_more),
+      parameters_(p), width_(padded(p.elements)), stride_(committed_.size() / std::max<std::size_t>(1, n_points)),
       extra_(elements + 5 * width_)
 {
   bulk_per_shear_ = ElasticParameters{1.0, p.poisson_ratio}.bulk_modulus();

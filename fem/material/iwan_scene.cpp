@@ -5,6 +5,10 @@
 #include "base/scene/document.hpp"
 #include "base/scene/ranges.hpp"
 
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
 namespace isostat
 {
 namespace
@@ -78,6 +82,26 @@ SceneFragment<IwanParameters> all_iwan_keys()
 {
   static const KeyTable table{iwan_in_scenes, iwan_fixed};
   return {table.keys()};
+}
+
+double smallest_k0(double m) { return (std::numbers::sqrt3 - m) / (std::numbers::sqrt3 + 2 * m); }
+
+double largest_k0(double m)
+{
+  const double left = std::numbers::sqrt3 - 2 * m;
+  return left > 0 ? (std::numbers::sqrt3 + m) / left : std::numeric_limits<double>::infinity();
+}
+
+void check_k0(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand, double k0)
+{
+  const double needed = std::numbers::sqrt3 * std::abs(1 - k0) / (1 + 2 * k0),
+               smallest = smallest_k0(sand.strength_ratio), largest = largest_k0(sand.strength_ratio);
+  if (needed > sand.strength_ratio)
+    document.refuse(prefix + ".k0",
+                    fmt::format("needs a strength_ratio of {:.3f}, sqrt(3) |1 - k0|/(1 + 2 k0), but the layer has {}, "
+                                "which allows a k0 from {:.3f}{}. Correct one of them, or leave k0 out.",
+                                needed, number_text(sand.strength_ratio), std::max(0.0, smallest),
+                                std::isfinite(largest) ? fmt::format(" to {:.3f}", largest) : " on"));
 }
 
 void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand,

@@ -12,7 +12,7 @@ namespace isostat
 {
 namespace
 {
-constexpr double percent = 0.01, one_atmosphere = 101.325e3, foot = 0.3048;
+constexpr double percent = 0.01, atmosphere = 101.325e3, foot = 0.3048;
 
 /// Damping ratio of Masing loops on the backbone x/(1 + x^a), x = gamma/gamma_r: that of the hyperbola (a = 1), and
 /// Darendeli's polynomial, which takes it in per cent.
@@ -96,7 +96,7 @@ constexpr Digitised<17> epri[] = {
 
 SoilCurve darendeli_curve(double pressure, double plasticity, double ocr)
 {
-  const double p = pressure / one_atmosphere;
+  const double p = pressure / atmosphere;
   return modified_hyperbola(percent * (0.0352 + 0.0010 * plasticity * std::pow(ocr, 0.3246)) * std::pow(p, 0.3483),
                             0.9190,
                             percent * (0.8005 + 0.0129 * plasticity * std::pow(ocr, -0.1069)) * std::pow(p, -0.2889));
@@ -104,7 +104,7 @@ SoilCurve darendeli_curve(double pressure, double plasticity, double ocr)
 
 SoilCurve menq_curve(double pressure, double uniformity, double d50)
 {
-  const double p = pressure / one_atmosphere;
+  const double p = pressure / atmosphere;
   return modified_hyperbola(
       percent * 0.12 * std::pow(uniformity, -0.6) * std::pow(p, 0.5 * std::pow(uniformity, -0.15)),
       0.86 + 0.1 * std::log10(p),

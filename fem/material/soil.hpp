@@ -28,7 +28,7 @@ struct Layer
 enum class Drainage
 {
   dry,       ///< no water: total stress is effective stress
-  undrained, ///< constant volume without a pressure unknown, columns only: u_z = 0, pressure from vertical equilibrium
+  undrained, ///< constant volume without a pressure unknown, columns only: u_z = 0 below the table, pressure by statics
   coupled    ///< u-p: displacement and pore pressure
 };
 

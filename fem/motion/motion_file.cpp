@@ -91,18 +91,6 @@ void check_block(const fs::path &path, const Block &block, const char *interval)
     reject(path, block.line, fmt::format("{} = {} s; must be > 0", interval, block.interval));
 }
 
-/// Refuses numbers that are too large for g where nothing says that they are.
-void check_assumed(const fs::path &path, const Motion &motion, const RecordUnit &unit)
-{
-  constexpr double strongest_shaking = 20; // g
-  if (const double peak = motion.peak() / standard_gravity; unit.assumed && peak > strongest_shaking)
-    reject(path, 1,
-           fmt::format(
-               "neither the header nor the scene states the unit, and the largest value, {:.4g}, is more than {} g; "
-               "give motion.unit in the scene",
-               peak, strongest_shaking));
-}
-
 Motion read_block(const fs::path &path, const Lines &lines, std::size_t first, const Block &block,
                   const RecordUnit &unit)
 {
@@ -367,25 +355,31 @@ std::optional<double> take_deepsoil(const fs::path &path, Columns &columns)
   return step;
 }
 
-Record read_table(const fs::path &path, const Lines &lines, AccelerationUnit unit)
+/// @param size_matters  else numbers without a unit may be of any
+Record read_table(const fs::path &path, const Lines &lines, AccelerationUnit unit, bool size_matters)
 {
   Columns columns = read_columns(path, lines);
   const std::size_t first = columns.lines[0];
   const std::optional<double> step = take_deepsoil(path, columns);
   const double interval = interval_of(path, lines, columns);
   const RecordUnit found = record_unit(path, columns.header, unit);
+  if (found.assumed && !step && size_matters)
+    reject(path, 1,
+           "neither the header nor the scene states the unit of the accelerations, and 0.2 may be 0.2 g or 0.2 m/s2; "
+           "must be stated. Give motion.unit = \"g\", \"m/s2\" or \"cm/s2\" in the scene");
   if (step && std::abs(*step - interval) > interval_tolerance * interval)
     reject(path, first,
            fmt::format("step = {} s; the times below rise by {:.6g} s. Correct one of them", *step, interval));
   for (double &a : columns.accelerations)
     a *= found.factor;
   const Motion motion(std::move(columns.accelerations), interval);
-  check_assumed(path, motion, found);
+  if (step) // else its unit is stated, or its size does not matter
+    check_assumed(path, motion, found);
   return {motion, columns.times[0]};
 }
 } // namespace
 
-Record read_record(const fs::path &path, AccelerationUnit unit)
+Record read_record(const fs::path &path, AccelerationUnit unit, bool size_matters)
 {
   const std::string text = read_text(path);
   const Lines lines = split_lines(text);
@@ -395,6 +389,6 @@ Record read_record(const fs::path &path, AccelerationUnit unit)
     return {read_knet(path, lines, unit), {}};
   if (keyed_line(lines, "SAMPLING_INTERVAL_S").first > 0)
     return {read_esm(path, lines, unit), {}};
-  return read_table(path, lines, unit);
+  return read_table(path, lines, unit, size_matters);
 }
 } // namespace isostat

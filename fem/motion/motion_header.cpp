@@ -294,4 +294,15 @@ double time_factor(std::string_view names_of_columns)
       return *factor;
   return 1;
 }
+void check_assumed(const fs::path &path, const Motion &motion, const RecordUnit &unit)
+{
+  constexpr double strongest_shaking = 3; // g
+  if (const double peak = motion.peak() / standard_gravity; unit.assumed && peak > strongest_shaking)
+    reject(path, 1,
+           fmt::format(
+               "neither the header nor the scene states the unit, and the largest value, {:.4g}, is more than {} g; "
+               "give motion.unit in the scene",
+               peak, strongest_shaking));
+}
+
 } // namespace isostat

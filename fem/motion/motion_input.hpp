@@ -56,7 +56,7 @@ private:
 /// Unit of the accelerations in a file.
 enum class AccelerationUnit
 {
-  stated, ///< by the file, else g
+  stated, ///< by the file; of AT2 and DEEPSOIL else g
   m_s2,
   cm_s2,
   g
@@ -81,11 +81,12 @@ struct Record
 ///  - K-NET ASCII ("Sampling Freq(Hz)", "Duration Time(s)", "Scale Factor") and ESM ASCII ("SAMPLING_INTERVAL_S: ",
 ///    "NDATA: ", "UNITS: ")
 /// Any may be gzipped. The unit is that of the header (see record_unit() of fem/motion/motion_header.hpp).
-/// @param unit  of a file that states none; must agree with one that does
+/// @param unit  of a file that states none; must agree with one that does. AT2 and DEEPSOIL without either are in g
+/// @param size_matters  false: it will be scaled to a peak, and two columns need no unit
 /// @throws InputError with file:line: missing file, text among the numbers, gaps or steps back in time, not-a-number,
-///         fewer or more values than announced, another unit, a quantity other than acceleration
+///         fewer or more values than announced, no unit or another one, a quantity other than acceleration
 /// tested: tests/fem/motion/motion_file_test.cpp
-Record read_record(const std::filesystem::path &path, AccelerationUnit unit);
+Record read_record(const std::filesystem::path &path, AccelerationUnit unit, bool size_matters = true);
 
 /// A w(t) sin(2 pi f t), 0 <= t <= duration. w rises as (1 - cos(pi t/ramp))/2 over the first `ramp` seconds and falls
 /// the same way over the last. Samples after `duration`, if it is no multiple of the interval, are 0. Without a ramp

@@ -95,6 +95,16 @@ void Dynamics::prepare_steps()
     pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_);
 }
 
+/// Unknowns of cells below the water table, where an undrained column keeps its volume.
+std::vector<bool> Dynamics::wet_unknowns() const
+{
+  std::vector<bool> wet(u_.locally_owned_size());
+  for (std::size_t k = 0; k < space_.cell_dofs.size(); ++k)
+    if (space_.cell_is_wet[k / (3 * space_.n_nodes)])
+      wet[space_.cell_dofs[k]] = true;
+  return wet;
+}
+
 /// Equation (4) solved for v+: v+ = D (f - F + G^T p) + keep v-, D = 1/(M/dt + C/2), keep = D (M/dt - C/2). C is mass
 /// damping and the dashpots (13).
 void Dynamics::make_coefficients()
@@ -109,10 +119,11 @@ void Dynamics::make_coefficients()
     }
   if (settings_.surface_traction)
     surface_ = space_.face_area(Face::surface);
+  const std::vector<bool> rigid = settings_.drainage == Drainage::undrained ? wet_unknowns() : std::vector<bool>(n);
   for (std::size_t i = 0; i < n; ++i)
     {
       const double m = mass_.local_element(i), c = settings_.mass_damping * m + dashpot_.local_element(i);
-      const bool held = m == 0 || (settings_.drainage == Drainage::undrained && i % 3 == 2);
+      const bool held = m == 0 || (rigid[i] && i % 3 == 2);
       damping_.local_element(i) = held ? 0 : c;
       update_.local_element(i) = held ? 0 : 1 / (m / time_step_ + c / 2);
       keep_.local_element(i) = held ? 0 : (m / time_step_ - c / 2) / (m / time_step_ + c / 2);
@@ -136,7 +147,8 @@ std::vector<double> Dynamics::point_pressure() const
     {
       const double load = settings_.surface_traction ? settings_.surface_traction(time())[2] : 0;
       for (std::size_t q = 0; q < pressure.size(); ++q)
-        pressure[q] = stresses_[q][2] - initial_stresses_[q][2] - load;
+        if (space_.cell_is_wet[q / space_.points_per_cell()])
+          pressure[q] = stresses_[q][2] - initial_stresses_[q][2] - load;
     }
   return pressure;
 }

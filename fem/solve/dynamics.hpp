@@ -54,7 +54,8 @@ struct DynamicsEnergy
 /// pressure (PressureSystem), constant and factorised once. The skeleton alone limits dt; water of any stiffness and
 /// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
 /// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,
-/// doi:10.1061/JMCEA3.0001144). The state at the start is taken as in equilibrium: a frozen column stays still bit
+/// doi:10.1061/JMCEA3.0001144). Undrained, soil below the water table keeps its volume (u_z = 0), soil above it is
+/// dry and moves vertically, too. The state at the start is taken as in equilibrium: a frozen column stays still bit
 /// for bit.   tested: tests/fem/solve/dynamics_test.cpp, tests/verification/shear_layer_test.cpp,
 /// tests/fem/water/pressure_system_test.cpp
 class Dynamics
@@ -85,7 +86,7 @@ public:
   const Vector &pressure() const { return p_; }                  ///< excess, at time() - dt; zero unless coupled
   std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time(), tension positive
   /// Excess pore pressure at the points, compression positive, Pa: of u-p at time() - dt, of an undrained column from
-  /// vertical equilibrium at time(), 0 if dry.
+  /// vertical equilibrium at time(), 0 if dry, and above the water table.
   std::vector<double> point_pressure() const;
   /// Sum over all ranks.
   DynamicsEnergy energy() const;
@@ -102,6 +103,7 @@ private:
   void check_settings() const;
   void prepare_steps();
   void make_coefficients();
+  std::vector<bool> wet_unknowns() const;
   template <typename Self, typename Visit>
   static void for_each_field(Self &self, Visit &&visit);
   // dynamics_step.cpp
@@ -150,6 +152,6 @@ private:
 };
 
 /// How a block that is shaken at its base is held: the base (fixed to its given motion unless compliant, and always
-/// in an undrained column vertically), its sides, drained surface.
+/// in an undrained column vertically below its water table), its sides, drained surface.
 Supports shaken_supports(bool compliant_base, Sides sides = Sides::tied);
 } // namespace isostat

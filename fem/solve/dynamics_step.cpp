@@ -151,7 +151,8 @@ void Dynamics::add_lagged_compression()
 void Dynamics::check_lagged_compression() const
 {
   for (std::size_t q = 0; q < lagged_fluids_.size(); ++q)
-    if (const double stiffness = 1 / lagged_fluids_[q].storage(lagged_pressure_[q]); !(moduli_[q].p < stiffness))
+    if (const double stiffness = 1 / lagged_fluids_[q].storage(lagged_pressure_[q]);
+        space_.cell_is_wet[q / space_.points_per_cell()] && !(moduli_[q].p < stiffness))
       {
         const std::string what =
             fmt::format("lagged compressibility at a height of {:.4g} m: the fluid in the pores, K_f/n = {:.4g} MPa, "

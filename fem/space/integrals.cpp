@@ -142,7 +142,7 @@ double FiniteElementSpace::max_frequency_squared(std::span<const WaveModuli> mod
     {
       double modulus = 0;
       for (std::size_t q = cell * n_gauss; q < (cell + 1) * n_gauss; ++q)
-        modulus = std::max(modulus, shear_only ? moduli[q].s : moduli[q].p);
+        modulus = std::max(modulus, shear_only && cell_is_wet[cell] ? moduli[q].s : moduli[q].p);
       maximum = std::max(maximum, modulus * cell_frequency_[cell]);
     }
   if (shared_out_)

@@ -24,6 +24,7 @@ porosity = 0.42
 permeability = "{k} m/s"
 {layer}
 material = "{material}"{pressure}
+k0 = 0.5
 shear_velocity = "160 m/s"
 {motion}
 {base}

@@ -24,6 +24,7 @@ cells = 2
 density = "1900 kg/m3"
 material = "iwan"
 reference_pressure = "100 kPa"
+k0 = 0.5
 shear_velocity = "120 m/s"
 [[motion]]
 axis = "x"

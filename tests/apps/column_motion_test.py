@@ -82,7 +82,7 @@ history_interval = "0.005 s"
 
     def table(self, name, start, values=None, header=""):
         rows = [f"{start + self.DT * i:.2f} {a:.8f}" for i, a in enumerate(self.SIGNAL if values is None else values)]
-        self.write(name, header + "\n".join(rows) + "\n")
+        self.write(name, (header or "time (s), a (g)\n") + "\n".join(rows) + "\n")
 
     def run_motions(self, *motions, duration="7 s", name="run"):
         text = self.LAYER + "".join(f'[[motion]]\naxis = "{axis}"\n{keys}\n' for axis, keys in motions)
@@ -118,3 +118,24 @@ history_interval = "0.005 s"
         _, summary = self.run_motions(("x", self.record("drift.txt", 'baseline = "quadratic"')), duration="4.1 s",
                                       name="level")
         self.assertEqual(summary["warnings"], [])
+        rows, summary = self.run_motions(("x", self.record("drift.txt", 'baseline = "quadratic"')), name="given",
+                                         duration='4.1 s"\ntime_step = "0.3 ms')
+        self.assertEqual(len(summary["warnings"]), 1, summary["warnings"])
+        self.assertRegex(summary["warnings"][0], r"0\.005 s is 16\.6667 of the time step, .*: rows are 0\.0051 s apart")
+        self.assert_near(rows["time"][1], 0.0051, 1e-12, "round-off")
+
+    def test_a_sine_that_starts_at_once_drifts(self):
+        """It ends at rest, but far away: its velocity A/omega (1 - cos omega t) has a mean."""
+        sine = 'kind = "harmonic"\namplitude = "0.1 g"\nfrequency = "2 Hz"\nduration = "4 s"\n'
+        _, summary = self.run_motions(("x", sine), duration="4 s", name="sine")
+        self.assertEqual(len(summary["warnings"]), 1, summary["warnings"])
+        self.assertRegex(summary["warnings"][0], r"along x ends 0\.312 m from where it began.*motion\.0\.ramp")
+        _, summary = self.run_motions(("x", sine + 'ramp = "1 s"\n'), duration="4 s", name="ramp")
+        self.assertEqual(summary["warnings"], [])
+
+    def test_two_columns_without_a_unit(self):
+        self.table("bare.txt", 0, header="# time, acceleration\n")
+        scene = self.LAYER + '[[motion]]\n{}[analysis]\nduration = "0.1 s"\n'
+        self.assert_refused(self.run_column(self.write("bare.toml", scene.format(self.record("bare.txt"))), "-o", "no"),
+                            "bare.txt:1", "motion.unit", "m/s2")
+        self.rows_of(scene.format(self.record("bare.txt", 'peak = "0.2 g"\n')), "scaled")

@@ -21,6 +21,7 @@ cells = 3
 permeability = "1e-4 m/s"
 material = "iwan"
 reference_pressure = "100 kPa"
+k0 = 0.5
 shear_velocity = "150 m/s"
 [[layer]]
 thickness = "4 m"

@@ -64,7 +64,7 @@ class Interrupted(ColumnTest):
         self.write("a.txt", "\n".join(f"{0.01 * k} {0.1 * (-1)**(k // 10)}" for k in range(100)))
         scene = self.write("shaken.toml", self.scene.read_text(encoding="utf-8").replace(
             'kind = "harmonic"\namplitude = "0.1 g"\nfrequency = "3 Hz"\nduration = "60 s"\nramp = "1 s"',
-            'kind = "record"\nfile = "a.txt"'))
+            'kind = "record"\nfile = "a.txt"\nunit = "m/s2"'))
         ensemble = ("isostat", "ensemble", scene, "--records", "a.txt", *settings(analysis__duration="0.05 s"))
         self.stop_drawing(*ensemble, begun="summary.txt", parts=("the same command continues",))
         self.assert_done(self.run_app(*ensemble, "-o", "out", "-q"))

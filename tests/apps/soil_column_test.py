@@ -176,7 +176,7 @@ class Mistakes(ColumnTest):
         self.assert_no_warning(result)
 
     def test_stress_beyond_the_strength(self):
-        self.refuse(["layer.0 (sand)", "k0"], "--overwrite", *settings(layer__0__k0=0.2))
+        self.refuse(["layer.0.k0 = 0.2", "strength_ratio of 0.990"], "--overwrite", *settings(layer__0__k0=0.2))
 
     def test_folder(self):
         result = self.run_column(self.scene, "-o", "out", *settings(analysis__duration="0.1 s"))

@@ -21,6 +21,7 @@ thickness = "10 m"
 cells = 5
 density = "2000 kg/m3"
 material = "iwan"
+k0 = 0.5
 shear_velocity = "200 m/s"
 [[layer]]
 name = "grains"

@@ -72,7 +72,6 @@ TEST(LayerCurve, MistakesAreRefused)
   refused("plasticity_index = 20\n", {"layer.0.plasticity_index", "has no effect without a curve"});
   refused("unloading = \"mrdf\"\n", {"layer.0.unloading", "needs the damping of a curve"});
   refused("strength_ratio = 0.6\nshear_strength = \"30 kPa\"\n", {"layer.0.shear_strength", "excludes strength_ratio"});
-  refused("curve = \"epri\"\nn1_60cs = 12\n", {"layer.0.curve", "excludes a resistance by density"});
   refused("damping = 0.2\n", {"layer.0.damping = 0.2; must be in [0, 0.1]"});
   expect_refused(layer + "curve = \"epri\"\n" + rest, {"does not belong to a layer of material \"elastic\""});
 }

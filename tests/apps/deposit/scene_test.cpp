@@ -131,6 +131,7 @@ TEST(ColumnScene, DefaultsAreThoseOfTheStructs)
 
   one.material = LayerMaterial::iwan;
   one.cells = 5;
+  one.k0 = one.default_k0();
   expected.layers = {one};
   find_in_situ_states(expected);
   EXPECT_EQ(parse_column_scene(sand + dry + dynamic, "s"), expected);
@@ -182,6 +183,36 @@ TEST(ColumnScene, CellsFromTheirSize)
   EXPECT_EQ(cells("0.5 m"), 10u);
   EXPECT_EQ(cells("0.49 m"), 11u);
   EXPECT_EQ(cells("50 m"), 1u);
+}
+
+TEST(ColumnScene, UnitWeightsBecomeDensities)
+{
+  const ColumnScene scene =
+      parse_column_scene(layer + "unit_weight = \"19.62 kN/m3\"\n" + dry + dynamic, "s",
+                         {"base={ kind = 'compliant', unit_weight = '23.544 kN/m3', shear_velocity = '800 m/s' }"});
+  EXPECT_EQ(scene.layers[0].density, 2000);
+  EXPECT_NEAR_BECAUSE(scene.base.density, 2400, 1e-9, "round-off of a quotient");
+  EXPECT_EQ(to_toml(scene).find("unit_weight"), std::string::npos);
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene);
+}
+
+/// 1 - sin(phi); of Iwan sin(phi) = M or, nearer to 1, what needs 0.9 M.
+TEST(ColumnScene, K0FollowsFromFriction)
+{
+  const std::string soil = "[[layer]]\nthickness = \"5 m\"\nmaterial = \"mohr_coulomb\"\nshear_velocity = \"200 "
+                           "m/s\"\ncells = 5\nfriction_angle = \"30 deg\"\n";
+  EXPECT_NEAR_BECAUSE(parse_column_scene(soil + dry + dynamic, "s").layers[0].k0, 0.5, 1e-12, "round-off of an angle");
+  EXPECT_EQ(parse_column_scene(smallest, "s").layers[0].k0, 0.5);
+  const auto of_sand = [](const char *ratio) {
+    return parse_column_scene(
+               sand + dry + dynamic, "s",
+               {"layer.0.phase_transformation_ratio=0.1", std::string("layer.0.strength_ratio=") + ratio})
+        .layers[0]
+        .k0;
+  };
+  EXPECT_NEAR_BECAUSE(of_sand("0.5"), 0.5, 1e-12, "the same formula");
+  EXPECT_NEAR_BECAUSE(std::sqrt(3) * (1 - of_sand("0.65")) / (1 + 2 * of_sand("0.65")), 0.9 * 0.65, 1e-12,
+                      "the same formula solved");
 }
 
 TEST(ColumnScene, TractionAndTimes)
@@ -256,7 +287,10 @@ TEST(ColumnScene, RoundTripToTheBit)
             scramble(key, key.field(scene), random);
         for (ColumnLayer &item : scene.layers) // what rules bind, and what is not written
           {
-            item.density = scene.water.density + 1 / 3.0;
+            item.density = 1000 + scene.water.density / 3;
+            if (item.shear_modulus)
+              *item.shear_modulus *= 1e5;
+            item.k0 = 0.5 + item.k0 / 20;
             item.saturation = scene.water.drainage == Drainage::coupled ? item.saturation : 1;
             item.iwan = item.material == LayerMaterial::iwan ? item.iwan : IwanParameters{};
             item.mohr_coulomb = {}; // its own test is below

@@ -53,7 +53,7 @@ TEST(SlopeScene, FactorOfSafetyOfTheInfiniteSlope)
   EXPECT_NEAR_BECAUSE(safety.factor, 0.7 * 0.6 / tangent, exact);
   EXPECT_EQ(safety.depth, 5);
   // in addition to a deviator of k0 = 0.5, sqrt(0.6^2 (2/3)^2 - 0.25/3) of the normal stress is left
-  EXPECT_NEAR_BECAUSE(factor(sand + "strength_ratio = 0.6\n" + dry + slope("10") + dynamic),
+  EXPECT_NEAR_BECAUSE(factor(sand + "k0 = 0.5\nstrength_ratio = 0.6\n" + dry + slope("10") + dynamic),
                       std::sqrt(0.16 - 0.25 / 3) / tangent, exact);
   // Mohr-Coulomb at k0 = 1: its circle has the radius sin(phi) of the normal stress, and a cohesion adds c cos(phi)
   const std::string frictional = "[[layer]]\nthickness = \"5 m\"\nmaterial = \"mohr_coulomb\"\nshear_velocity = \"200 "
@@ -79,8 +79,8 @@ TEST(SlopeScene, WhatCannotStandIsRefused)
   expect_refused(loose + undrained + slope("17") + dynamic, {"static shear stress is", "k0 = 1"});
   EXPECT_NO_THROW(parse_column_scene(loose + undrained + slope("16.6") + dynamic, "s")); // tan = 0.298
   // in addition to a deviator of k0 = 0.5: tan = 0.2769
-  expect_refused(sand + "strength_ratio = 0.6\n" + dry + slope("15.5") + dynamic, {"k0 = 0.5"});
-  EXPECT_NO_THROW(parse_column_scene(sand + "strength_ratio = 0.6\n" + dry + slope("15.4") + dynamic, "s"));
+  expect_refused(sand + "k0 = 0.5\nstrength_ratio = 0.6\n" + dry + slope("15.5") + dynamic, {"k0 = 0.5"});
+  EXPECT_NO_THROW(parse_column_scene(sand + "k0 = 0.5\nstrength_ratio = 0.6\n" + dry + slope("15.4") + dynamic, "s"));
   expect_refused("[[layer]]\nthickness = \"5 m\"\nmaterial = \"mohr_coulomb\"\nshear_velocity = \"200 "
                  "m/s\"\ncells = 5\nfriction_angle = \"30 deg\"\ncohesion = \"0 kPa\"\n" +
                      dry + slope("29") + dynamic,
@@ -117,9 +117,11 @@ TEST(SlopeScene, WaterTablesThatAreRefused)
   expect_refused(wet_sand + table("2.3") + dynamic, {"column.toml:8: water.table = 2.3 m", "nearest is at 2 m"});
   expect_refused(wet_sand + table("5") + dynamic, {"less than the height of the soil, 5 m", "\"dry\""});
   expect_refused(wet_sand + table("-1") + dynamic, {"water.table", ">= 0 m"});
-  for (const char *drainage : {"dry", "undrained"})
-    expect_refused(wet_sand + table("2") + dynamic, {"has no meaning", drainage, "\"coupled\""},
-                   {std::string("water.drainage=") + drainage});
+  expect_refused(wet_sand + table("2") + dynamic, {"has no meaning", "\"dry\"", "\"coupled\""}, {"water.drainage=dry"});
+  EXPECT_NO_THROW(parse_column_scene(wet_sand + table("2") + dynamic, "s", {"water.drainage=undrained"}));
+  expect_refused("[[layer]]\nthickness = \"5 m\"\nmaterial = \"grains\"\ncells = 5\n[grains]\nlibrary = \"a.h5\"\n" +
+                     table("2") + dynamic,
+                 {"must not be below the top of packings", "\"coupled\""}, {"water.drainage=undrained"});
   expect_refused(wet_sand + table("2") + slope("4", "water = \"submerged\"\n") + dynamic,
                  {"must be 0 m if slope.water is \"submerged\""});
   // light soil may lie above the table, not below it

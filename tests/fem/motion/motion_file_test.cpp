@@ -95,12 +95,16 @@ TEST_F(MotionFile, At2WithAUnitOfItsOwn)
                     HasSubstr("says g, and the scene says unit = \"cm/s2\""), HasSubstr("Take unit out of the scene")));
 }
 
-TEST_F(MotionFile, TooLargeForAUnitThatNothingStates)
+/// Two columns must have a unit unless only their shape counts; AT2 and DEEPSOIL are in g by custom, up to 3 g.
+TEST_F(MotionFile, AUnitThatNothingStates)
 {
-  EXPECT_THAT(refusal("0 1\n0.01 190\n"),
+  EXPECT_THAT(refusal("0 1\n0.01 0.2\n"),
               AllOf(HasSubstr("motion.txt:1: neither the header nor the scene states the unit"),
-                    HasSubstr("the largest value, 190, is more than 20 g; give motion.unit in the scene")));
-  EXPECT_THAT(refusal("A\nNPTS= 2, DT= .02 SEC\n1 190\n"), HasSubstr("the largest value, 190"));
+                    HasSubstr("must be stated. Give motion.unit = \"g\", \"m/s2\" or \"cm/s2\" in the scene")));
+  EXPECT_EQ(read_record(put("motion.txt", "0 1\n0.01 190\n"), stated, false).motion.accelerations().size(), 2u);
+  EXPECT_THAT(refusal("2 0.01\n0 1\n0.01 190\n"),
+              HasSubstr("the largest value, 190, is more than 3 g; give motion.unit in the scene"));
+  EXPECT_THAT(refusal("A\nNPTS= 2, DT= .02 SEC\n1 3.1\n"), HasSubstr("the largest value, 3.1"));
   EXPECT_EQ(read("0 1\n0.01 190\n", AccelerationUnit::g).peak(), 190 * standard_gravity);
   EXPECT_EQ(read("t, a (g)\n0 1\n0.01 190\n", stated).peak(), 190 * standard_gravity);
 }
@@ -112,7 +116,7 @@ TEST_F(MotionFile, StartsOfTables)
                                     {"-1 1\n-0.5 2\n", -1.0},
                                     {"time (ms), a (g)\n500,1\n505,2\n", 0.5}})
     {
-      const Record record = read_record(put("motion.txt", text), stated);
+      const Record record = read_record(put("motion.txt", text), AccelerationUnit::g);
       ASSERT_TRUE(record.start) << text;
       EXPECT_EQ(*record.start, start) << text;
       EXPECT_EQ(record.motion.delay(), 0) << text;
