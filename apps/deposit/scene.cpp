@@ -3,6 +3,7 @@
 
 #include "apps/deposit/default_mesh.hpp"
 #include "apps/deposit/layer_tables.hpp"
+#include "apps/deposit/resistance.hpp"
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
 #include "fem/material/iwan_scene.hpp"
@@ -186,16 +187,14 @@ SoilProfile soil_profile(const ColumnScene &scene)
 
 void find_in_situ_states(ColumnScene &scene)
 {
-  const SoilProfile soil = soil_profile(scene);
-  const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0;
-  double bottom = soil.height();
-  for (ColumnLayer &layer : scene.layers)
+  double top = 0;
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
     {
-      bottom -= layer.thickness;
-      layer.in_situ_depth = soil.height() - bottom - layer.thickness / 2;
-      const double vertical = soil.vertical_effective_stress(bottom + layer.thickness / 2, surcharge);
-      layer.in_situ_pressure =
-          scene.analysis.kind == AnalysisKind::biaxial ? scene.biaxial.confinement : (1 + 2 * layer.k0) / 3 * vertical;
+      ColumnLayer &layer = scene.layers[k];
+      const Stress stress = middle_stress(scene, k);
+      layer.in_situ_pressure = -(stress[0] + stress[1] + stress[2]) / 3;
+      layer.in_situ_depth = top + layer.thickness / 2;
+      top += layer.thickness;
     }
 }
 

@@ -88,7 +88,7 @@ class SoilPointTest(FolderTest):
         for n, surcharge in ((5, 0), (15, 0), (25, 0), (15, -48.1), (15, 101.9)):
             depth = {"thickness": f"{10 + 2 * surcharge / 19.62:.4f} m"} if surcharge else {}
             with self.subTest(n=n, surcharge=surcharge):
-                found = soil_test(scene(n1_60cs=n, **depth))
+                found = soil_test(scene(n1_60cs=n, reference_pressure="100 kPa", **depth))
                 target = blow_resistance(n, found.vertical_stress)
                 self.assert_close(found.crr_of_scene, target, 1e-12, "round-off")
                 self.assert_close(found.crr, target, 0.02, "1 % of contraction, half cycles; the limit is 5 %")

@@ -126,7 +126,7 @@ TEST(ColumnScene, DefaultsAreThoseOfTheStructs)
   one.shear_velocity = 200;
   expected.layers = {one};
   find_in_situ_states(expected);
-  EXPECT_EQ(expected.layers[0].in_situ_pressure, 2.0 / 3 * 2000 * 9.81 * 2.5);
+  EXPECT_DOUBLE_EQ(expected.layers[0].in_situ_pressure, 2.0 / 3 * 2000 * 9.81 * 2.5);
   EXPECT_EQ(parse_column_scene(smallest, "s"), expected);
 
   one.material = LayerMaterial::iwan;
