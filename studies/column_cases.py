@@ -38,6 +38,7 @@ cells = {cells}
 density = "{DENSITY} kg/m3"
 k0 = 1.0
 material = "iwan"
+reference_pressure = "100 kPa"
 shear_velocity = "{VELOCITY} m/s"
 strength_ratio = {STRENGTH_RATIO}
 contraction = 0

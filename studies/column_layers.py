@@ -63,17 +63,18 @@ def hyperbola(strain):
     return 1 / (1 + np.asarray(strain, float)), np.where(small, 2 * np.asarray(strain, float) / (3 * np.pi), damping)
 
 
-def equivalent_linear(layers, reference_strain, motion, interval, *, ratio=0.65, passes=30):
+def equivalent_linear(layers, curve, motion, interval, *, ratio=0.65, passes=30):
     """Each layer has the secant modulus and damping of `ratio` times its largest strain (Schnabel, Lysmer, Seed 1972).
 
     layers   with the moduli of small strain        motion   acceleration of base or outcrop, at an interval in s
+    curve    function of the strains of the layers: G/G_max and damping ratio
     Returns surface acceleration, largest strain of each layer, change of the strains in the last pass over the largest.
     """
     n = 2 * len(motion)
     frequency, spectrum = np.fft.rfftfreq(n, interval), np.fft.rfft(motion, n)
     largest, change = np.zeros(len(layers.thickness)), 1.0
     for _ in range(passes):
-        secant, damping = hyperbola(ratio * largest / reference_strain)
+        secant, damping = curve(ratio * largest)
         soft = Layers(layers.thickness, layers.velocity * np.sqrt(secant), layers.density, damping, layers.rock)
         before, largest = largest, np.abs(np.fft.irfft(spectrum * soft.strains(frequency), n)).max(axis=1)
         change = np.abs(largest - before).max() / largest.max()

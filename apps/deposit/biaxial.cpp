@@ -120,6 +120,8 @@ ColumnLayer weakened(const ColumnLayer &layer, const WeakZone &weak)
     soil.shear_modulus = weak.factor * layer.small_strain_modulus();
   soil.shear_velocity.reset();
   soil.iwan.strength_ratio *= weak.factor;
+  if (soil.shear_strength)
+    *soil.shear_strength *= weak.factor;
   soil.iwan.phase_transformation_ratio *= weak.factor;
   soil.mohr_coulomb = weakened(soil.mohr_coulomb, weak.factor);
   soil.grains = weak.grains;

@@ -125,8 +125,10 @@ void check_shear_velocity(const SceneDocument &document, const ColumnLayer &laye
                                 velocity, range.low, range.high));
 }
 
-void check_layer(const SceneDocument &document, const ColumnScene &scene, std::size_t i)
+void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t i)
 {
+  if (scene.layers[i].material == LayerMaterial::iwan)
+    check_curve(document, scene, i);
   const ColumnLayer &layer = scene.layers[i];
   if (scene.mesh.distributed && layer.material == LayerMaterial::user)
     document.refuse(fmt::format("layer.{}.material", i),
@@ -145,11 +147,11 @@ void check_layer(const SceneDocument &document, const ColumnScene &scene, std::s
     document.refuse(prefix + ".permeability", "has no effect in a block if water.drainage is \"dry\". Remove it.");
   if (layer.material == LayerMaterial::iwan)
     {
-      check_iwan(document, prefix, layer.iwan, layer.sand_density);
+      check_iwan(document, prefix, layer.sand(), layer.sand_density);
       check_resistance(document, scene, i);
     }
-  if (layer.material == LayerMaterial::iwan && !block)
-    check_k0(document, prefix, layer.iwan, layer.k0);
+  if (layer.material == LayerMaterial::iwan && !block && !layer.curve.is_given())
+    check_k0(document, prefix, layer.sand(), layer.k0);
   if (layer.material == LayerMaterial::mohr_coulomb)
     check_mohr_coulomb(document, prefix, layer.mohr_coulomb);
   constexpr unsigned most = 1000000;
@@ -253,6 +255,7 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
 {
   check_groups(document, scene);
   complete(document, scene);
+  find_in_situ_states(scene);
   check_mesh(document, scene);
   check_box(document, scene);
   check_plate(document, scene);

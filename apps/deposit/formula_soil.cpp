@@ -2,17 +2,14 @@
 #include "apps/deposit/formula_soil.hpp"
 
 #include "base/error.hpp"
-#include "fem/material/elastic.hpp"
 
 namespace isostat
 {
 std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t n_points)
 {
-  if (layer.material == LayerMaterial::iwan)
-    return std::make_unique<Iwan>(layer.sand(), n_points);
   if (layer.material == LayerMaterial::mohr_coulomb)
     return std::make_unique<MohrCoulomb>(layer.frictional_soil(), n_points);
-  return std::make_unique<Elastic>(ElasticParameters{layer.small_strain_modulus(), layer.poisson_ratio}, n_points);
+  return damped_material(layer, n_points);
 }
 
 Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0, double z)

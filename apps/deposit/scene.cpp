@@ -79,11 +79,22 @@ double ColumnLayer::small_strain_modulus() const
   return shear_modulus ? *shear_modulus : density * *shear_velocity * *shear_velocity;
 }
 
+double ColumnLayer::in_situ_modulus() const
+{
+  const double exponent = material == LayerMaterial::iwan           ? iwan.exponent
+                          : material == LayerMaterial::mohr_coulomb ? mohr_coulomb.exponent
+                                                                    : 0;
+  return small_strain_modulus() * std::pow(in_situ_pressure / reference_pressure.value_or(in_situ_pressure), exponent);
+}
+
 IwanParameters ColumnLayer::sand() const
 {
   IwanParameters sand = iwan;
   sand.shear_modulus = small_strain_modulus();
+  sand.reference_pressure = reference_pressure.value_or(in_situ_pressure);
   sand.poisson_ratio = poisson_ratio;
+  if (shear_strength)
+    sand.strength_ratio = *shear_strength / in_situ_pressure;
   return sand;
 }
 
@@ -91,6 +102,7 @@ MohrCoulombParameters ColumnLayer::frictional_soil() const
 {
   MohrCoulombParameters soil = mohr_coulomb;
   soil.shear_modulus = small_strain_modulus();
+  soil.reference_pressure = reference_pressure.value_or(in_situ_pressure);
   soil.poisson_ratio = poisson_ratio;
   return soil;
 }
@@ -172,6 +184,21 @@ SoilProfile soil_profile(const ColumnScene &scene)
   return profile;
 }
 
+void find_in_situ_states(ColumnScene &scene)
+{
+  const SoilProfile soil = soil_profile(scene);
+  const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0;
+  double bottom = soil.height();
+  for (ColumnLayer &layer : scene.layers)
+    {
+      bottom -= layer.thickness;
+      layer.in_situ_depth = soil.height() - bottom - layer.thickness / 2;
+      const double vertical = soil.vertical_effective_stress(bottom + layer.thickness / 2, surcharge);
+      layer.in_situ_pressure =
+          scene.analysis.kind == AnalysisKind::biaxial ? scene.biaxial.confinement : (1 + 2 * layer.k0) / 3 * vertical;
+    }
+}
+
 GroundLine ground_line(const ColumnMesh &mesh)
 {
   GroundLine line;
@@ -231,6 +258,7 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
   ColumnScene scene = checked_scene(document);
   find_motion_files(document, path, scene);
   find_libraries(document, path, scene);
+  find_curves(document, path, scene);
   choose_mesh(document, scene, true);
   if (scene.output.folder.empty())
     scene.output.folder = results_folder(path);

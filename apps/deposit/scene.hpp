@@ -2,6 +2,7 @@
 // What a run of the soil column consists of. Lengths m, stresses Pa, times s, accelerations m/s2, as everywhere inside.
 #pragma once
 #include "apps/deposit/biaxial.hpp"
+#include "apps/deposit/layer_curve.hpp"
 #include "apps/deposit/plate.hpp"
 #include "base/scene/fragment.hpp"
 #include "coupling/batch/rve_material_settings.hpp"
@@ -76,15 +77,22 @@ struct ColumnLayer : Layer
   LayerMaterial material = LayerMaterial::elastic;
   std::optional<double> unit_weight;                   ///< only in files, as that of ColumnBase
   std::optional<double> shear_modulus, shear_velocity; ///< one of them is set, of a formula
-  double poisson_ratio = 0.3;                          ///< of the drained skeleton
-  IwanParameters iwan;                ///< ignored by other materials; its stiffness is the layer's, see sand()
-  SandDensity sand_density;           ///< likewise; resisting_layer() gives its sand
-  MohrCoulombParameters mohr_coulomb; ///< likewise, see frictional_soil()
-  SpecimenRequest grains;             ///< ignored by other materials
-  std::string table;                  ///< only in files: when a scene has been read, its rows have become layers
+  std::optional<double> reference_pressure;            ///< of that stiffness, Pa; left out: in_situ_pressure
+  double in_situ_pressure = 100e3;      ///< p' in the middle of the layer, Pa; follows from the scene when it is read
+  double in_situ_depth = 0;             ///< of that place, m; likewise
+  double poisson_ratio = 0.3;           ///< of the drained skeleton
+  std::optional<double> damping;        ///< ratio of critical at small strain; left out: see small_strain_damping()
+  LayerCurve curve;                     ///< of iwan
+  std::optional<double> shear_strength; ///< of iwan at in_situ_pressure, Pa; left out: iwan.strength_ratio
+  IwanParameters iwan;                  ///< ignored by other materials; its stiffness is the layer's, see sand()
+  SandDensity sand_density;             ///< likewise; resisting_layer() gives its sand
+  MohrCoulombParameters mohr_coulomb;   ///< likewise, see frictional_soil()
+  SpecimenRequest grains;               ///< ignored by other materials
+  std::string table;                    ///< only in files: when a scene has been read, its rows have become layers
 
   bool from_formula() const { return shear_modulus || shear_velocity; }
   double small_strain_modulus() const;           ///< G, Pa, whichever of the two was given (rho V_s^2)
+  double in_situ_modulus() const;                ///< G at in_situ_pressure, Pa
   IwanParameters sand() const;                   ///< `iwan` with the stiffness of the layer
   MohrCoulombParameters frictional_soil() const; ///< `mohr_coulomb` with the stiffness of the layer
   /// K0 of soil that was never loaded more, 1 - sin(phi) (Jaky 1944): phi the friction angle of mohr_coulomb; of iwan
@@ -244,6 +252,10 @@ struct ColumnScene
 /// Layers and water as the solvers take them, layers in the order of the scene. Without water (dry) its density is 0,
 /// so that all weight is effective.
 SoilProfile soil_profile(const ColumnScene &scene);
+
+/// Sets ColumnLayer::in_situ_pressure and in_situ_depth of all layers; a surcharge on a part of the surface does
+/// not count. Reading a scene does so, too.
+void find_in_situ_states(ColumnScene &scene);
 
 /// The surface of a box that is not level.
 GroundLine ground_line(const ColumnMesh &mesh);

@@ -166,16 +166,33 @@ constexpr Key layer_keys[] = {
   {.path = "shear_velocity", .field = member<&ColumnLayer::shear_velocity>, .unit = unit::m_s,
    .presence = Presence::experiment, .value = "200 m/s", .range = {1, 6000},
    .reason = "because waves in mud are as slow, and in no rock as fast", .kinds = formula, .group = "stiffness",
-   .text = "Shear-wave velocity V_s at small strain: G = density V_s^2; for iwan and mohr_coulomb at the reference "
-           "pressure."},
+   .text = "Shear-wave velocity V_s at small strain: G = density V_s^2; for iwan and mohr_coulomb at "
+           "`reference_pressure`."},
   {.path = "shear_modulus", .field = member<&ColumnLayer::shear_modulus>, .unit = unit::MPa,
    .presence = Presence::optional, .value = "80 MPa", .range = stresses, .reason = because_stresses, .kinds = formula,
    .group = "stiffness",
-   .text = "Shear modulus G at small strain; for iwan and mohr_coulomb at the reference pressure."},
+   .text = "Shear modulus G at small strain; for iwan and mohr_coulomb at `reference_pressure`."},
+  {.path = "reference_pressure", .field = member<&ColumnLayer::reference_pressure>, .unit = unit::kPa,
+   .presence = Presence::optional, .value = "100 kPa", .range = stresses, .reason = because_stresses,
+   .kinds = iwan | mohr_coulomb,
+   .text = "Mean effective stress p_r at which the stiffness is given; left out: that in situ in the middle of the "
+           "layer, so that V_s is the one measured there."},
   {.path = "poisson_ratio", .field = member<&ColumnLayer::poisson_ratio>, .value = "0.3",
    .range = {0, 0.5, false, true},
    .reason = "because the skeleton does not widen when it is stretched, and is compressible without its water",
    .kinds = formula, .text = "Poisson's ratio of the drained skeleton."},
+  {.path = "damping", .field = member<&ColumnLayer::damping>, .presence = Presence::optional, .value = "0.01",
+   .range = {0, 0.1}, .reason = "because more is not small: the soil would be three times as stiff at 30 Hz as at rest",
+   .kinds = kind_bit(LayerMaterial::elastic) | iwan,
+   .text = "Damping at small strain, ratio of critical, the same at all frequencies from 0.1 to 30 Hz; left out: that of "
+           "`curve` at its smallest strain, else 0. V_s is that at 1 Hz then, and the time step is shorter. Not in a "
+           "static analysis."},
+};
+
+constexpr Key shear_strength_key[] = {
+  {.path = "shear_strength", .field = member<&ColumnLayer::shear_strength>, .unit = unit::kPa,
+   .presence = Presence::optional, .value = "60 kPa", .range = stresses, .reason = because_stresses, .kinds = iwan,
+   .text = "Shear strength at the mean effective stress in the middle of the layer, in place of `strength_ratio`."},
 };
 
 constexpr Key own_sand_key[] = {
@@ -280,7 +297,8 @@ constexpr Key output_keys[] = {
   {.path = "history_interval", .field = member<&ColumnOutput::history_interval>, .unit = unit::s, .value = "0.01 s",
    .range = {0, 10, true}, .reason = "because rows further apart show no shaking",
    .text = "Time between rows of the histories. A time step that is not given divides it; it is rounded to whole steps "
-           "of one that is given, and if it is shorter every step has a row. A consolidation writes every step. Left out "
+           "of one that is given or of a soil with grains, and if it is shorter every step has a row. A consolidation "
+           "writes every step. Left out "
            "of a dynamic analysis whose `highest_frequency` f is above 25 Hz: 1/(4 f)."},
   {.path = "depths", .field = member<&ColumnOutput::depths>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"2 m\", \"5 m\"]", .range = not_negative,
@@ -340,6 +358,8 @@ const SceneSchema &column_schema()
                              splice<&ColumnScene::slope>("slope", slope_keys()),
                              KeyRun(layer_keys, "layer"),
                              splice("layer", saturation_keys(), 0, [](ColumnLayer &layer) -> Layer & { return layer; }),
+                             splice<&ColumnLayer::curve>("layer", curve_keys(), iwan),
+                             KeyRun(shear_strength_key, "layer"),
                              splice<&ColumnLayer::iwan>("layer", iwan_keys(), iwan),
                              splice<&ColumnLayer::sand_density>("layer", sand_density_keys(), iwan),
                              splice<&ColumnLayer::mohr_coulomb>("layer", mohr_coulomb_keys(), mohr_coulomb),

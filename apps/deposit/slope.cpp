@@ -73,8 +73,8 @@ double shear_strength(const ColumnLayer &layer, const PlaneStress &stress)
                    radius = (mean * friction + cohesion) / std::hypot(1, friction);
       return std::sqrt(std::max(0.0, radius * radius - half * half));
     }
-  const double strength = layer.iwan.strength_ratio * mean_pressure(layer, stress),
-               normal = (1 - layer.k0) * stress.normal / std::sqrt(3.0);
+  const double strength = layer.sand().strength_ratio * mean_pressure(layer, stress),
+               normal = layer.curve.is_given() ? 0 : (1 - layer.k0) * stress.normal / std::sqrt(3.0);
   return std::sqrt(std::max(0.0, strength * strength - normal * normal));
 }
 

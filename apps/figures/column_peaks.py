@@ -52,8 +52,9 @@ def peaks(column):
 
 @draws("fig_liquefaction")
 def liquefaction(column):
-    """Cyclic stress ratio CSR against the cyclic resistance ratio CRR of the layers that have one, and the factor of
-    safety CRR/CSR, over the depth; dashed: a factor of 1, dotted: boundaries between layers."""
+    """Cyclic stress ratio CSR against the cyclic resistance ratio CRR of the layers that have one (of 15 cycles,
+    magnitude 7.5), and the factor of safety CRR/CSR, over the depth; dashed: a factor of 1, dotted: boundaries between
+    layers. Where soil liquefies in the run, its softening limits the CSR."""
     found = resistance(column)
     if found is None or not np.isfinite(found[3]).any():
         return None

@@ -85,8 +85,11 @@ class Column:
         if len(self.time) < 2 or not (np.diff(self.time) > 0).all():
             raise BadInput("history.csv: needs two rows at least, and times that rise")
         self.scene = self._read(folder / "scene.toml", tomllib.loads)
-        self.profiles = self._read_profiles(folder / "profiles.h5")
-        self.maps = self._read_profiles(folder / "maps.h5")  # of a box
+        profiles, maps = (self._read_profiles(folder / name) for name in ("profiles.h5", "maps.h5"))
+        self.velocities = {name: profiles[name] for name in ("depth", "shear_velocity")
+                           if "shear_velocity" in profiles}  # also of a run without profiles in time
+        self.profiles, self.maps = (table if {"depth", "time"} <= table.keys() and table["time"].size else {}
+                                    for table in (profiles, maps))  # maps: of a box
         self.plate = table_if_there(folder / "plate/history.csv", "its figure is left out")
         self.grains = Grains(folder)
         self._read_scene()
@@ -135,12 +138,10 @@ class Column:
             return {}
         try:
             with h5py.File(path) as file:
-                profiles = {name: np.asarray(item) for name, item in file.items() if isinstance(item, h5py.Dataset)}
+                return {name: np.asarray(item) for name, item in file.items() if isinstance(item, h5py.Dataset)}
         except OSError as error:
             note(f"{path.name} cannot be read ({error}); figures over the depth are left out")
             return {}
-        complete = {"depth", "time"} <= profiles.keys() and profiles["time"].size and profiles["depth"].size
-        return profiles if complete else {}
 
     def _ground_scale(self):
         """Height of the ground of a box at the vertical of the histories over that of the layers."""

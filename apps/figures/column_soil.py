@@ -134,11 +134,11 @@ def profiles(column):
 def velocity(column):
     """Shear-wave velocity of small strain at the points over the depth at the start, where it varies; dotted:
     boundaries between layers."""
-    speeds = column.profiles.get("shear_velocity") if column.profiles else None
+    speeds = column.velocities.get("shear_velocity")
     if speeds is None or np.ptp(speeds) < 1e-6 * speeds.max():
         return None
     figure, axes = plt.subplots(figsize=(5.2, 4.0), layout="constrained")
-    depth = column.profiles["depth"]
+    depth = column.velocities["depth"]
     z, curve = column.broken(depth, speeds)
     axes.plot(curve, z, color=BLACK, linewidth=1.0, marker=".", markersize=4 if len(depth) < 50 else 0)
     axes.set(xlim=(0, None), xlabel="Shear-wave velocity at the start (m/s)", ylabel="Depth (m)")

@@ -94,10 +94,10 @@ def site(column):
     V_s30         30 m over the travel time through them, below the column in the rock of a compliant base; None above a
                   rigid base that is less deep
     """
-    speeds = column.profiles.get("shear_velocity")
+    speeds = column.velocities.get("shear_velocity")
     if speeds is None or not (speeds > 0).all():
         return {}
-    top, bottom = column.shares(column.profiles["depth"])
+    top, bottom = column.shares(column.velocities["depth"])
     times, height = (bottom - top) / speeds, float(bottom[-1])
     time, upper = float(times.sum()), float((np.clip(30 - top, 0, bottom - top) / speeds).sum())
     deep = height >= 30 - 1e-9

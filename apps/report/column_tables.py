@@ -24,9 +24,9 @@ def span(values, digits=3):
 
 def speeds(column, k):
     """Of shear waves in a layer at the start."""
-    if "shear_velocity" in column.profiles:
-        inside = column.layer_at(column.profiles["depth"]) == k
-        return span(column.profiles["shear_velocity"][inside]) if inside.any() else "-"
+    if column.velocities:
+        inside = column.layer_at(column.velocities["depth"]) == k
+        return span(column.velocities["shear_velocity"][inside]) if inside.any() else "-"
     velocity = column.layers[k]["velocity"]
     return f"{velocity:.4g}" if velocity else "-"
 

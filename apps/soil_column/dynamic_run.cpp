@@ -15,7 +15,8 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
 {
   DynamicsSettings settings;
   settings.time_step = scene.analysis.time_step.value_or(0);
-  settings.multiple = scene.output.history_interval;
+  if (!scene.has_grains()) // of which up to half as many steps again would be expensive
+    settings.multiple = scene.output.history_interval;
   settings.safety = scene.analysis.safety;
   settings.mass_damping = scene.analysis.mass_damping;
   settings.viscosity = scene.analysis.viscosity;

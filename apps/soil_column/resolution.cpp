@@ -242,6 +242,15 @@ std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vec
         "the motion along z moves the column as a rigid body: without drainage its volume is constant, and "
         "no P wave runs in it. Set water.drainage = \"coupled\" for P waves.");
   for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    if (const ColumnLayer &layer = scene.layers[k]; layer.curve.is_given())
+      if (const std::optional<double> strain = strain_of_strength(layer))
+        warnings.push_back(fmt::format(
+            "layer.{}: beyond a shear strain of {:.2g} % the curve would exceed 0.9 of the shear strength, {:.4g} kPa "
+            "at "
+            "p' = {:.4g} kPa, and the soil goes over to the strength there. Give the layer its shear_strength.",
+            k, 100 * *strain, layer.sand().strength_ratio * layer.in_situ_pressure / 1e3,
+            layer.in_situ_pressure / 1e3));
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
     if (const auto &[material, density] = std::pair(scene.layers[k].material, scene.layers[k].grains.relative_density);
         material == LayerMaterial::grains && density && !density_remark(*density).empty())
       warnings.push_back(fmt::format("layer.{}.relative_density = {:g}{}", k, *density, density_remark(*density)));

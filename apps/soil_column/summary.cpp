@@ -46,6 +46,26 @@ void add_slope(const Spreading &s, const ColumnScene &scene, Summary &summary)
               Value{"end_gamma_depth", s.gamma_depth});
 }
 
+/// In the middle of the layer, at small strain.
+double in_situ_velocity(const ColumnLayer &layer) { return std::sqrt(layer.in_situ_modulus() / layer.density); }
+
+/// V_s of the layers that are not of grains or the user's; of many the slowest and the fastest.
+void add_velocities(const ColumnScene &scene, Summary &summary)
+{
+  std::vector<double> velocities;
+  for (const ColumnLayer &layer : scene.layers)
+    if (layer.from_formula())
+      velocities.push_back(in_situ_velocity(layer));
+  constexpr std::size_t few = 6;
+  if (velocities.empty())
+    return;
+  const auto [slowest, fastest] = std::ranges::minmax(velocities);
+  summary.row("V_s in situ", "{} m/s in the middle of {}",
+              velocities.size() <= few ? fmt::format("{:.4g}", fmt::join(velocities, ", "))
+                                       : fmt::format("{:.4g} to {:.4g}", slowest, fastest),
+              velocities.size() > 1 ? "the layers" : "the layer");
+}
+
 /// From the surface down.
 Json layers_json(const ColumnScene &scene)
 {
@@ -59,7 +79,9 @@ Json layers_json(const ColumnScene &scene)
                         {"bottom", top + layer.thickness},
                         {"material", material_names[static_cast<int>(layer.material)]},
                         {"density", layer.density},
-                        {"shear_modulus", layer.from_formula() ? Json(layer.small_strain_modulus()) : Json()}});
+                        {"shear_modulus", layer.from_formula() ? Json(layer.small_strain_modulus()) : Json()},
+                        {"in_situ_pressure", layer.in_situ_pressure},
+                        {"in_situ_shear_velocity", layer.from_formula() ? Json(in_situ_velocity(layer)) : Json()}});
       if (const std::optional<double> resistance = layer_resistance(scene, k))
         layers.back()["crr"] = *resistance;
       top += layer.thickness;
@@ -131,6 +153,7 @@ void add_scene(const ColumnSummary &s, const ColumnScene &scene, Summary &summar
   summary.row("soil", "{:.4g} m in {} layer{}, {}", Value{"height", scene.height()}, scene.layers.size(),
               scene.layers.size() > 1 ? "s" : "",
               Value{"drainage", std::string(drainage_names[static_cast<int>(scene.water.drainage)])});
+  add_velocities(scene, summary);
   summary.row("mesh", "{} elements, {} points, dimension {}", Value{"elements", s.cells}, Value{"points", s.points},
               Value{"dimension", scene.mesh.dimension});
   add_waves(s, scene, summary);

@@ -49,10 +49,12 @@ std::vector<double> DecimationFilter::at(std::uint64_t sample) const
   std::vector<double> mean(n_channels_, 0.0);
   double sum = 0; // of the weights, with those of the rest before the first sample
   const std::uint64_t last = std::min<std::uint64_t>(sample + half_, n_samples_ - 1);
-  for (std::uint64_t n = sample < half_ ? 0 : sample - half_; n <= last; ++n)
+  const std::uint64_t first = sample < half_ ? 0 : sample - half_;
+  std::size_t place = first % (2 * half_ + 1);
+  for (std::uint64_t n = first; n <= last; ++n, place = place < 2 * half_ ? place + 1 : 0)
     {
       const double w = weights_[n < sample ? sample - n : n - sample];
-      const double *values = &samples_[n % (2 * half_ + 1) * n_channels_];
+      const double *values = &samples_[place * n_channels_];
       for (std::size_t c = 0; c < n_channels_; ++c)
         mean[c] += w * values[c];
       sum += w;

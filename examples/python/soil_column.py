@@ -27,10 +27,10 @@ duration = 2 if options.small else 7
 CRUST = {"name": "crust", "thickness": "2 m", "cells": 4, "density": "1800 kg/m3", "material": "elastic",
          "shear_velocity": "120 m/s"}
 LOOSE = {"name": "loose sand", "thickness": "5 m", "cells": 10, "density": "1900 kg/m3", "porosity": 0.44,
-         "material": "iwan", "k0": 0.5, "shear_velocity": "160 m/s"}
+         "material": "iwan", "k0": 0.5, "reference_pressure": "100 kPa", "shear_velocity": "160 m/s"}
 DENSE = {"name": "dense sand", "thickness": "8 m", "cells": 16, "density": "2050 kg/m3", "porosity": 0.38,
-         "material": "iwan", "k0": 0.5, "shear_velocity": "200 m/s", "strength_ratio": 0.65,
-         "phase_transformation_ratio": 0.35, "contraction": 0.2, "dilation": 0.6}
+         "material": "iwan", "k0": 0.5, "reference_pressure": "100 kPa", "shear_velocity": "200 m/s",
+         "strength_ratio": 0.65,         "phase_transformation_ratio": 0.35, "contraction": 0.2, "dilation": 0.6}
 
 
 def shake(name, middle):

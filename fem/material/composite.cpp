@@ -79,6 +79,12 @@ std::unique_ptr<Material> stacked(std::vector<std::unique_ptr<Material>> materia
   return std::make_unique<CompositeMaterial>(std::move(parts));
 }
 
+void CompositeMaterial::set_time_step(double seconds)
+{
+  for (const Member &part : parts_)
+    part.material->set_time_step(seconds);
+}
+
 void CompositeMaterial::set_initial_stress(std::span<const Stress> effective)
 {
   assert(effective.size() == n_points_);

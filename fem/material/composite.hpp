@@ -22,6 +22,7 @@ public:
 
   std::string name() const override { return "composite"; }
   std::size_t n_points() const override { return n_points_; }
+  void set_time_step(double seconds) override;
   void set_initial_stress(std::span<const Stress> effective) override;
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
   void commit() override;

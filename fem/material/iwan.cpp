@@ -14,10 +14,12 @@ namespace isostat
 {
 namespace
 {
-IwanParameters checked(IwanParameters p)
+std::vector<double> checked_numbers(IwanParameters p, std::span<const double> more)
 {
   check_numbers(all_iwan_keys().keys, p, "iwan: ");
-  return p;
+  std::vector<double> numbers = numbers_of(all_iwan_keys().keys, p);
+  numbers.insert(numbers.end(), more.begin(), more.end());
+  return numbers;
 }
 } // namespace
 
@@ -48,24 +50,27 @@ Backbone fit_hyperbola(unsigned n)
   return b;
 }
 
-Iwan::Iwan(const IwanParameters &p, std::size_t n_points)
-    : RowMaterial("iwan", numbers_of(all_iwan_keys().keys, checked(p)), n_points,
-                  elements + 5 * padded(p.elements) + (p.reconsolidation > 0 ? std::size_t(n_reconsolidation) : 0)),
+Iwan::Iwan(const IwanParameters &p, std::size_t n_points) : Iwan(p, fit_hyperbola(p.elements), {}, 0, n_points) {}
+
+Iwan::Iwan(const IwanParameters &p, const Backbone &b, std::span<const double> numbers, std::size_t n_more,
+           std::size_t n_points)
+    : RowMaterial("iwan", checked_numbers(p, numbers), n_points,
+                  elements + 5 * padded(p.elements) + (p.reconsolidation > 0 ? std::size_t(n_reconsolidation) : 0) +
+                      n_more),
       parameters_(p), width_(padded(p.elements)), stride_(committed_.size() / std::max<std::size_t>(1, n_points)),
       extra_(elements + 5 * width_)
 {
-  const Backbone b = fit_hyperbola(p.elements);
   bulk_per_shear_ = ElasticParameters{1.0, p.poisson_ratio}.bulk_modulus();
   weights_.assign(width_, 0.0); // padding bears nothing and yields never
   yields_.assign(width_, 1.0);
-  for (unsigned k = 0; k < p.elements; ++k)
+  for (std::size_t k = 0; k < b.weights.size(); ++k)
     {
       weights_[k] = b.weights[k];
       yields_[k] = p.strength_ratio * b.weights[k] * b.yield_strains[k];
     }
   increments_.resize(n_points);
   const double s = -p.reference_pressure;
-  set_initial_stress(std::vector<Stress>(n_points, Stress{s, s, s, 0, 0, 0}));
+  Iwan::set_initial_stress(std::vector<Stress>(n_points, Stress{s, s, s, 0, 0, 0}));
 }
 
 double Iwan::reference_strain(double p) const { return parameters_.strength_ratio * p / shear_modulus(p); }

@@ -68,7 +68,7 @@ Backbone fit_hyperbola(unsigned elements);
 /// makes small stresses contract less. With `reconsolidation` a point whose p' has been at a fifth of its
 /// initial value (r_u = 0.95 may leave that much) has (25c) (Yoshimine et al. 2006, Soil Dyn. Earthq. Eng. 26, 253) as
 /// the volumetric strain of its reconsolidation: what loosening and K do not give is closed by compression, most of it
-/// while p' is low. gamma_max is the largest |gamma| since the start.
+/// while p' is low, and erases z. gamma_max is the largest |gamma| since the start.
 ///
 /// Tension positive in stresses and strains of the interface. Rotations are not followed: strains are small. There is
 /// no critical void ratio: cyclic mobility tends to loops of one size.
@@ -101,8 +101,11 @@ public:
   double shear_modulus(double pressure) const;
   double reference_strain(double pressure) const;
 
-private:
-  static constexpr std::size_t max_elements = 128, lanes = 4;
+protected:
+  /// @param numbers  parameters of a derived material   @param n_more  numbers that it keeps at the end of each point's
+  /// row, behind p' and the elements; 0 at first
+  Iwan(const IwanParameters &parameters, const Backbone &backbone, std::span<const double> numbers, std::size_t n_more,
+       std::size_t n_points);
   enum : std::size_t // one point: its numbers, its elements' deviators component by component, then, if it
                      // reconsolidates by (25c), what that needs
   {
@@ -121,8 +124,16 @@ private:
     initial_pressure,
     n_reconsolidation
   };
-  static std::size_t padded(std::size_t n_elements) { return (n_elements + lanes - 1) / lanes * lanes; }
   using Shear = std::array<double, 5>; // deviator in axes that make |s| = sqrt(J2) and |gamma| = gamma of simple shear
+
+  IwanParameters parameters_;
+  std::size_t width_, stride_;           // elements with padding; numbers per point
+  std::vector<double> weights_, yields_; // w_k, M w_k x_k
+  std::vector<Gradient> increments_;     // of the last trial
+
+private:
+  static constexpr std::size_t max_elements = 128, lanes = 4;
+  static std::size_t padded(std::size_t n_elements) { return (n_elements + lanes - 1) / lanes * lanes; }
   struct Increment
   {
     Shear shear{};
@@ -140,11 +151,7 @@ private:
   void share_out(const Shear &deviator, double pressure, double *state) const;
   Stiffness tangent(std::size_t point) const;
 
-  IwanParameters parameters_;
-  std::size_t width_, stride_; // elements with padding; numbers per point
-  std::size_t extra_;          // where the last part begins
+  std::size_t extra_; // where the last part begins
   double bulk_per_shear_;
-  std::vector<double> weights_, yields_; // w_k, M w_k x_k
-  std::vector<Gradient> increments_;     // of the last trial
 };
 } // namespace isostat

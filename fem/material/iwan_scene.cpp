@@ -17,9 +17,6 @@ using namespace ranges;
 
 // clang-format off
 constexpr Key iwan_in_scenes[] = {
-  {.path = "reference_pressure", .field = member<&IwanParameters::reference_pressure>, .unit = unit::kPa,
-   .value = "100 kPa", .range = ranges::stresses, .reason = ranges::because_stresses,
-   .text = "Mean effective stress p_r at which the stiffness is given."},
   {.path = "exponent", .field = member<&IwanParameters::exponent>, .value = "0.5", .range = {0, 1},
    .reason = "because stiffness does not fall with p', nor does it rise faster than strength",
    .text = "n of the small-strain stiffness G (p'/p_r)^n."},
@@ -63,6 +60,8 @@ constexpr Key density_in_scenes[] = {
 
 constexpr Key iwan_fixed[] = {
   {.path = "shear_modulus", .field = member<&IwanParameters::shear_modulus>, .unit = unit::Pa, .range = positive},
+  {.path = "reference_pressure", .field = member<&IwanParameters::reference_pressure>, .unit = unit::Pa,
+   .range = stresses, .reason = because_stresses},
   {.path = "poisson_ratio", .field = member<&IwanParameters::poisson_ratio>, .range = {-1, 0.5, true, true}},
   {.path = "residual_ratio", .field = member<&IwanParameters::residual_ratio>, .range = {0, 1, false, true}},
   {.path = "min_pressure", .field = member<&IwanParameters::min_pressure>, .unit = unit::Pa, .range = positive,
@@ -108,7 +107,8 @@ void check_k0(const SceneDocument &document, const std::string &prefix, const Iw
 void check_iwan(const SceneDocument &document, const std::string &prefix, const IwanParameters &sand,
                 const SandDensity &density)
 {
-  if (sand.phase_transformation_ratio > sand.strength_ratio)
+  const bool feels_shear = sand.contraction > 0 || sand.dilation > 0;
+  if (feels_shear && sand.phase_transformation_ratio > sand.strength_ratio)
     document.refuse(prefix + ".phase_transformation_ratio",
                     "must not exceed strength_ratio, which no stress goes beyond. Correct one of them.");
   const IwanParameters standard;

@@ -64,7 +64,8 @@ Iwan::Increment Iwan::increment(const Gradient &h, std::size_t i) const
 }
 
 /// The part of an increment that (25c) takes without a stress, so that p' is back at p0' with its volumetric strain. Of
-/// what K does not give, the part (p0' - p')/p' is left on the way: most is closed while p' is low.
+/// what K does not give, the part (p0' - p')/p' is left on the way: most is closed while p' is low. The compression
+/// also erases the fabric, to a twentieth when all is closed: the sand resists again.
 double Iwan::reconsolidate(const double *from, const Increment &d, double plastic, double bulk, double *to) const
 {
   const double p = from[pressure], *old = from + extra_, start = old[initial_pressure];
@@ -78,10 +79,14 @@ double Iwan::reconsolidate(const double *from, const Increment &d, double plasti
   now[largest_strain] = liquefied ? std::max(old[largest_strain], std::sqrt(square)) : 0;
   now[volume] = liquefied ? old[volume] + d.volumetric : 0;
   now[initial_pressure] = start;
-  if (!liquefied || d.volumetric == 0 || from[loose] > 0) // a gap closes first
+  to[fabric] = from[fabric];
+  if (!liquefied || d.volumetric == 0)
     return 0;
-  const double left =
-      parameters_.reconsolidation * std::min(0.08, now[largest_strain]) - now[volume] - compression(p, start);
+  const double all = parameters_.reconsolidation * std::min(0.08, now[largest_strain]);
+  to[fabric] *= std::exp(-3 * std::max(0.0, d.volumetric) / all);
+  const double left = all - now[volume] - compression(p, start);
+  if (from[loose] > 0) // a gap closes first
+    return 0;
   if (left <= 0)
     return 0;
   const double ratio = bulk * left * start / (p * std::max(start - p, 0.05 * start)),
@@ -126,7 +131,8 @@ void Iwan::change_pressure(const double *from, const Shear &flow, const Incremen
     }
   // (23), integrated by one explicit step that cannot overshoot z_max
   const double growth = std::min(1.0, parameters_.fabric_rate * std::max(0.0, -plastic));
-  to[fabric] = from[fabric] + growth * (parameters_.fabric_limit - from[fabric]);
+  const double z = parameters_.reconsolidation > 0 ? to[fabric] : from[fabric];
+  to[fabric] = z + growth * (parameters_.fabric_limit - z);
   to[pressure] = next;
   to[loose] = std::min(gap, parameters_.loosening_limit);
   to[floor_pressure] = from[floor_pressure];

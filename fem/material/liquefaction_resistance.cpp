@@ -12,16 +12,10 @@ namespace isostat
 {
 namespace
 {
-constexpr double atmosphere = 101325; // Pa
+constexpr double one_atmosphere = 101325; // Pa
 
 /// D_r.
 double cone_density(double q) { return 0.478 * std::pow(q, 0.264) - 1.063; }
-
-bool liquefies(const IwanParameters &sand, double ratio, const Stress &in_situ)
-{
-  SoilPoint point(std::make_unique<Iwan>(sand, 1), in_situ);
-  return point.cyclic_shear(-ratio * in_situ[2], reference_cycles).to_liquefaction <= reference_cycles;
-}
 } // namespace
 
 double blow_count(const SandDensity &density)
@@ -47,7 +41,7 @@ double overburden_factor(const SandDensity &density, double vertical)
 {
   const double slope = 1 / (density.qc1ncs ? 37.3 - 8.27 * std::pow(*density.qc1ncs, 0.264)
                                            : 18.9 - 2.55 * std::sqrt(blow_count(density)));
-  return std::min(1.1, 1 - std::min(0.3, slope) * std::log(vertical / atmosphere));
+  return std::min(1.1, 1 - std::min(0.3, slope) * std::log(vertical / one_atmosphere));
 }
 
 double resistance(const SandDensity &density, double vertical)
@@ -68,7 +62,8 @@ double reconsolidation_factor(const SandDensity &density)
                                        : -0.369 * std::sqrt(blow_count(density)));
 }
 
-IwanParameters resisting(const IwanParameters &given, const SandDensity &density, const Stress &in_situ)
+IwanParameters resisting(const IwanParameters &given, const SandDensity &density, const Stress &in_situ,
+                         const std::function<std::unique_ptr<Material>(const IwanParameters &)> &make)
 {
   IwanParameters sand = given;
   if (!density.given())
@@ -80,7 +75,8 @@ IwanParameters resisting(const IwanParameters &given, const SandDensity &density
   sand.fabric_rate = 150;
   const auto liquefies_with = [&](double contraction) {
     sand.contraction = contraction;
-    return liquefies(sand, ratio, in_situ);
+    SoilPoint point(make(sand), in_situ);
+    return point.cyclic_shear(-ratio * in_situ[2], reference_cycles).to_liquefaction <= reference_cycles;
   };
   constexpr double least = 1e-4, most = 1e4, factor = 4;
   double high = 1;

@@ -4,6 +4,8 @@
 #pragma once
 #include "fem/material/iwan.hpp"
 
+#include <functional>
+#include <memory>
 #include <optional>
 
 namespace isostat
@@ -47,5 +49,10 @@ double reconsolidation_factor(const SandDensity &density);
 /// a few hundredths of a second. A sand without density stays as it is.
 /// @param in_situ  stress at which it is to have this resistance
 /// @throws InputError  no contraction gives it: its strength is too low
-IwanParameters resisting(const IwanParameters &sand, const SandDensity &density, const Stress &in_situ);
+/// @param make  one point of it: Iwan, or one with a curve and damping
+IwanParameters resisting(
+    const IwanParameters &sand, const SandDensity &density, const Stress &in_situ,
+    const std::function<std::unique_ptr<Material>(const IwanParameters &)> &make = [](const IwanParameters &one) {
+      return std::make_unique<Iwan>(one, 1);
+    });
 } // namespace isostat

@@ -53,6 +53,9 @@ public:
   /// Brings every point to a stress without strain, before the first trial.   @param effective  n_points() stresses
   virtual void set_initial_stress(std::span<const Stress> effective) = 0;
 
+  /// How long each of the next increments takes, s. For materials whose stress depends on it; others ignore it.
+  virtual void set_time_step(double seconds) { static_cast<void>(seconds); }
+
   /// Stress of every point after its increment of displacement gradient from the committed state. Increments are small
   /// (a time or load step); the material handles large rotations itself.
   /// @throws RunFailure naming the point if a stress cannot be found

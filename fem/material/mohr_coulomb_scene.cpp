@@ -13,9 +13,6 @@ using namespace ranges;
 
 // clang-format off
 constexpr Key mohr_coulomb_in_scenes[] = {
-  {.path = "reference_pressure", .field = member<&MohrCoulombParameters::reference_pressure>, .unit = unit::kPa,
-   .value = "100 kPa", .range = ranges::stresses, .reason = ranges::because_stresses,
-   .text = "Mean effective stress p_r at which the stiffness is given."},
   {.path = "exponent", .field = member<&MohrCoulombParameters::exponent>, .value = "0", .range = {0, 1},
    .reason = "because stiffness does not fall with depth, nor does it rise faster than stress",
    .text = "n of the shear modulus G (p'/p_r)^n at the initial mean effective stress of a point; it stays constant. "
@@ -49,6 +46,8 @@ constexpr Key mohr_coulomb_in_scenes[] = {
 constexpr Key mohr_coulomb_fixed[] = {
   {.path = "shear_modulus", .field = member<&MohrCoulombParameters::shear_modulus>, .unit = unit::Pa,
    .range = positive},
+  {.path = "reference_pressure", .field = member<&MohrCoulombParameters::reference_pressure>, .unit = unit::Pa,
+   .range = stresses, .reason = because_stresses},
   {.path = "poisson_ratio", .field = member<&MohrCoulombParameters::poisson_ratio>, .range = {-1, 0.5, true, true}},
 };
 // clang-format on

@@ -39,6 +39,7 @@ public:
 
   std::string name() const override { return "nonlocal " + inner_->name(); }
   std::size_t n_points() const override { return inner_->n_points(); }
+  void set_time_step(double seconds) override { inner_->set_time_step(seconds); }
   /// s begins with the initial stress as the inner material does: any field of it is kept, not only a uniform one.
   void set_initial_stress(std::span<const Stress> effective) override;
   /// The same where the inner material has been brought to these stresses already.

@@ -125,7 +125,10 @@ void ResponseSpectrum::follow(double acceleration)
           peak[i] = size > peak[i] ? size : peak[i];
         }
       for (std::size_t i = 0; i < n; ++i) // apart: more pointers than registers
-        largest[i] = std::max(largest[i], std::abs(us[i]));
+        {
+          const double size = std::abs(us[i]);
+          largest[i] = size > largest[i] ? size : largest[i];
+        }
     }
   started_ = true;
   last_ = acceleration;

@@ -88,6 +88,7 @@ void Dynamics::check_settings() const
 void Dynamics::prepare_steps()
 {
   make_coefficients();
+  material_.set_time_step(time_step_);
   if (viscosity_)
     viscosity_->set_time_step(time_step_);
   if (settings_.drainage == Drainage::coupled)

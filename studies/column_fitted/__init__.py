@@ -111,7 +111,8 @@ def iwan_of(fitted, misfit):
     exponent = np.log(fitted[1, 0] / fitted[0, 0]) / np.log(PRESSURES[1] / PRESSURES[0])
     ratios = fitted[:, 1] / PRESSURES
     print(f"G {fitted[:, 0] / 1e6} MPa, exponent {exponent:.3f}, strength ratios {ratios}, misfit {100 * misfit:.2f} %")
-    return (f'material = "iwan"\nshear_modulus = "{fitted[0, 0] / 1e6} MPa"\nexponent = {exponent}\n'
+    return (f'material = "iwan"\nreference_pressure = "{PRESSURES[0] / 1e3} kPa"\n'
+            f'shear_modulus = "{fitted[0, 0] / 1e6} MPa"\nexponent = {exponent}\n'
             f"strength_ratio = {ratios.mean()}\ncontraction = 0\ndilation = 0\nelements = 64")
 
 

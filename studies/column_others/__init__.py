@@ -8,7 +8,7 @@ import numpy as np
 
 from figures.common import BLUE, GREY, RED, plt
 from studies import column_cases as cases
-from studies.column_layers import Layers, equivalent_linear
+from studies.column_layers import Layers, equivalent_linear, hyperbola
 from studies.columns import Run, histories
 from studies.drawing import save
 from studies.tables import write_tables
@@ -142,7 +142,8 @@ def equivalent(results, path):
     table, spectra = [], {}
     for (peak,), rows in results:
         interval = rows["time"][1]
-        surface, strains, change = equivalent_linear(layers, reference, rows["input_ax"], interval)
+        surface, strains, change = equivalent_linear(layers, lambda x: hyperbola(x / reference), rows["input_ax"],
+                                                     interval)
         mine, other = (cases.response_spectrum(a, interval, PERIODS) for a in (rows["surface_ax"], surface))
         spectra[peak] = mine / other
         depth = (np.arange(80) + 0.5) * cases.HEIGHT / 80

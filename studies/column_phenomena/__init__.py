@@ -23,7 +23,7 @@ density = "1900 kg/m3"
 porosity = 0.42
 permeability = "{k} m/s"
 {layer}
-material = "{material}"
+material = "{material}"{pressure}
 k0 = 0.5
 shear_velocity = "160 m/s"
 {motion}
@@ -48,6 +48,7 @@ NOISE = 0.001, 0.1, 0.2, 0.5  # root of mean square, m/s2
 
 def text(*, k="1e-5", water="", layer="", motion=SHAKE, base="", duration=10, drainage="coupled", material="iwan",
          viscosity=0.1, interval=10, safety=0.8):
+    pressure = '\nreference_pressure = "100 kPa"' if material == "iwan" else ""
     return SCENE.format(**locals())
 
 

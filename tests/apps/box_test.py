@@ -29,6 +29,7 @@ cells = 3
 density = "1950 kg/m3"
 permeability = "1e-4 m/s"
 material = "iwan"
+reference_pressure = "100 kPa"
 k0 = 0.5
 shear_velocity = "140 m/s"
 [[motion]]

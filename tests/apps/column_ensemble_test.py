@@ -23,6 +23,7 @@ thickness = "4 m"
 cells = 2
 density = "1900 kg/m3"
 material = "iwan"
+reference_pressure = "100 kPa"
 k0 = 0.5
 shear_velocity = "120 m/s"
 [[motion]]
@@ -301,7 +302,8 @@ mesh.ground_z = ["4 m", "3 m"]""").replace("density =", 'permeability = "1e-4 m/
         refused(self.scene, "-n", 4, *settings(grains__realisations=2), parts=("6 realisations", "needs 8"))
         refused(self.scene, "--jobs", 2, parts=("-n and --records are missing",))
         refused(SCENES / "terzaghi.toml", "-n", 2, parts=("analysis.kind", "consolidation"))
-        own = self.write("own.toml", re.sub("shear_velocity.*", "", SAND.replace('"iwan"', '"user"')))
+        own = SAND.replace('"iwan"', '"user"')
+        own = self.write("own.toml", re.sub("(shear_velocity|reference_pressure).*", "", own))
         refused(own, "--records", "first.txt", parts=("layer.0.material", "isostat.column.run()"))
         all_seeds = settings(layer__0__mixed_realisations=2, grains__realisations=2)
         refused(self.scene, "-n", 2, *all_seeds, parts=("every point has all seeds", "mixed_realisations"))

@@ -118,6 +118,11 @@ history_interval = "0.005 s"
         _, summary = self.run_motions(("x", self.record("drift.txt", 'baseline = "quadratic"')), duration="4.1 s",
                                       name="level")
         self.assertEqual(summary["warnings"], [])
+        rows, summary = self.run_motions(("x", self.record("drift.txt", 'baseline = "quadratic"')), name="given",
+                                         duration='4.1 s"\ntime_step = "0.3 ms')
+        self.assertEqual(len(summary["warnings"]), 1, summary["warnings"])
+        self.assertRegex(summary["warnings"][0], r"0\.005 s is 16\.6667 of the time step, .*: rows are 0\.0051 s apart")
+        self.assert_near(rows["time"][1], 0.0051, 1e-12, "round-off")
 
     def test_a_sine_that_starts_at_once_drifts(self):
         """It ends at rest, but far away: its velocity A/omega (1 - cos omega t) has a mean."""

@@ -20,6 +20,7 @@ thickness = "3 m"
 cells = 3
 permeability = "1e-4 m/s"
 material = "iwan"
+reference_pressure = "100 kPa"
 k0 = 0.5
 shear_velocity = "150 m/s"
 [[layer]]

@@ -20,6 +20,7 @@ cells = 4
 density = "1900 kg/m3"
 permeability = "1e-4 m/s"
 material = "iwan"
+reference_pressure = "100 kPa"
 k0 = 0.5
 shear_velocity = "140 m/s"
 [[motion]]

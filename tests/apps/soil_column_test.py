@@ -154,6 +154,7 @@ class Mistakes(ColumnTest):
                     *settings(analysis__time_step="10 ms"))
 
     def test_elements_too_long(self):
+        self.write("soil.toml", SOIL.replace('reference_pressure = "100 kPa"\n', ""))
         short = settings(analysis__duration="0.1 s", motion__0__frequency="40 Hz", layer__0__material="elastic")
         result = self.run_column(self.scene, "-o", "low", "-q", *short)
         self.assert_done(result)

@@ -152,6 +152,24 @@ class ColumnTest(ToleranceTest):
         self.assertGreater(np.max(np.abs(program["surface_ax"])), 1)
         self.assert_near(np.max(np.abs(ours["surface_ax"] - program["surface_ax"])), 0, 1e-9, "m/s2, rounding")
 
+    def test_what_is_taken_out_of_a_site_response(self):
+        """Methods of the results; their numbers are tested in tests/apps/site_response_test.py."""
+        results = column.run(self.scene, self.folder / "out", materials={"sand": Elastic()}, quiet=True)
+        a, dt = results.motion()
+        self.assertEqual((len(a), round(dt, 9)), (121, 0.01))
+        self.assertEqual(results.intensity()["PGA"], np.abs(a).max())
+        self.assertEqual(results.profile["PGA"][0].round(6), round(results.summary["peak_surface"], 6))
+        self.assertEqual([len(values) for values in results.spectrum("input", "x", [0.1, 1.0])], [2, 2, 2])
+        self.assertEqual(results.site()["height"], 10)
+        self.assertIsNone(results.resistance())
+        self.assertGreater(results.first_frequency(), 1)
+        results.write_at2(self.folder / "surface.at2")
+        self.assertIn("NPTS= 121, DT= 0.01 SEC", (self.folder / "surface.at2").read_text(encoding="ascii"))
+        for call, message in ((lambda: results.motion(5.0), "depth = 5 m: must be one of output.depths"),
+                              (lambda: results.transfer(over="outcrop"), "there is no outcrop motion")):
+            with self.assertRaisesRegex(isostat.InputError, message):
+                call()
+
     def test_without_own_material_it_has_the_bits_of_the_program(self):
         scene, program = self.run_program()
         ours = column.run(column.ColumnScene(scene), self.folder / "python")

@@ -125,15 +125,33 @@ TEST(ColumnScene, DefaultsAreThoseOfTheStructs)
   one.cells = 10;
   one.shear_velocity = 200;
   expected.layers = {one};
+  find_in_situ_states(expected);
+  EXPECT_EQ(expected.layers[0].in_situ_pressure, 2.0 / 3 * 2000 * 9.81 * 2.5);
   EXPECT_EQ(parse_column_scene(smallest, "s"), expected);
 
   one.material = LayerMaterial::iwan;
   one.cells = 5;
   one.k0 = one.default_k0();
   expected.layers = {one};
+  find_in_situ_states(expected);
   EXPECT_EQ(parse_column_scene(sand + dry + dynamic, "s"), expected);
   EXPECT_EQ(ColumnScene().water.drainage, parse_column_scene(consolidation, "s").water.drainage);
   EXPECT_EQ(ColumnScene().analysis.steps, parse_column_scene(consolidation, "s").analysis.steps);
+}
+
+TEST(ColumnScene, VelocityIsThatInSituUnlessAPressureIsGiven)
+{
+  const std::string load = "[load]\nsurcharge = \"30 kPa\"\n";
+  const ColumnLayer plain = parse_column_scene(sand + undrained + dynamic + load, "s").layers[0];
+  const double pressure = 2.0 / 3 * (30e3 + 1000 * 9.81 * 2.5);
+  EXPECT_DOUBLE_EQ(plain.in_situ_pressure, pressure);
+  EXPECT_EQ(plain.sand().reference_pressure, plain.in_situ_pressure);
+  EXPECT_DOUBLE_EQ(Iwan(plain.sand(), 1).shear_modulus(pressure), 2000.0 * 200 * 200);
+  EXPECT_EQ(plain.in_situ_modulus(), 2000.0 * 200 * 200);
+  const ColumnLayer given =
+      parse_column_scene(sand + "reference_pressure = \"100 kPa\"\n" + undrained + dynamic + load, "s").layers[0];
+  EXPECT_EQ(given.sand().reference_pressure, 100e3);
+  EXPECT_DOUBLE_EQ(given.in_situ_modulus(), 2000.0 * 200 * 200 * std::sqrt(pressure / 100e3));
 }
 
 TEST(ColumnScene, ProfileHasTheLayersOfTheScene)
@@ -302,6 +320,7 @@ TEST(ColumnScene, RoundTripToTheBit)
         scene.analysis.last_time = 7 * scene.analysis.first_time;
         for (double &depth : scene.output.depths)
           depth = scene.height() / 3;
+        find_in_situ_states(scene);
         EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene) << to_toml(scene);
       }
 }

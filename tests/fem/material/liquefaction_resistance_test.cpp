@@ -101,6 +101,18 @@ TEST(LiquefactionResistance, ASandHasWhatItsDensitySays)
     }
 }
 
+TEST(LiquefactionResistance, ReconsolidatedSandResistsAgain)
+{
+  const Stress stress = level(100e3, 0.5);
+  SoilPoint test = point(resisting({.shear_modulus = 80e6}, blows(20), stress), stress);
+  const double tau = 100e3 * resistance(blows(20), 100e3), first = test.cyclic_shear(tau, 100, 2).to_liquefaction;
+  test.shear_to(0, false, 1);
+  test.compress_to(100e3);
+  const double second = test.cyclic_shear(tau, 100).to_liquefaction;
+  EXPECT_GT(second, 2); // half a cycle with the fabric of liquefied sand
+  EXPECT_LT(second, first);
+}
+
 TEST(LiquefactionResistance, WithoutIt)
 {
   const IwanParameters sand;

@@ -2,9 +2,10 @@
 #include "base/error.hpp"
 #include "fem/material/composite.hpp"
 #include "fem/material/elastic.hpp"
-#include "fem/material/iwan.hpp"
+#include "fem/material/iwan_curve.hpp"
 #include "fem/material/mohr_coulomb.hpp"
 #include "fem/material/nonlocal.hpp"
+#include "fem/material/viscoelastic.hpp"
 
 #include <cstring>
 #include <gmock/gmock.h>
@@ -45,6 +46,16 @@ std::unique_ptr<Material> make_nonlocal()
       {0, 0, 0}, {9, 0, 0}, {0.1, 0, 0.1}, {9, 0, 0.1}, {0, 0.1, 0.1}};
   const std::vector<double> volumes = {1, 2, 0.5, 1, 1};
   return std::make_unique<Nonlocal>(make_iwan(), NonlocalParameters{.length = 0.1}, positions, volumes);
+}
+
+std::unique_ptr<Material> make_iwan_of_curve()
+{
+  return std::make_unique<IwanOfCurve>(IwanParameters{}, fit_hyperbola(12), LoopReduction{0.6, 0.2, 2}, n);
+}
+
+std::unique_ptr<Material> make_viscoelastic()
+{
+  return std::make_unique<Viscoelastic>(make_iwan_of_curve(), 0.02); // in statics: time alone changes no stress
 }
 
 /// What the solver relies on, of every material.
@@ -215,7 +226,7 @@ TEST_P(MaterialProtocol, WaveModuliBoundTheStiffness)
 
 INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol,
                          testing::Values(make_elastic, make_iwan, make_mohr_coulomb, make_layers, make_composite,
-                                         make_nonlocal));
+                                         make_nonlocal, make_iwan_of_curve, make_viscoelastic));
 
 TEST(CompositeMaterial, PointsOfTheFirstOfAStackComeFirst)
 {
