@@ -12,7 +12,10 @@ namespace
 {
 const std::string level = dry + dynamic;
 
-std::string with(const std::string &keys, const std::string &rest = level) { return sand + keys + "\n" + rest; }
+std::string with(const std::string &keys, const std::string &rest = level)
+{
+  return sand + keys + "\nk0 = 0.5\n" + rest;
+}
 
 TEST(LayerResistance, KeysComeThroughTextAndGoToTheSand)
 {
@@ -34,10 +37,10 @@ TEST(LayerResistance, KeysComeThroughTextAndGoToTheSand)
 
 TEST(LayerResistance, BelowTheWaterAndASurcharge)
 {
-  const ColumnScene scene =
-      parse_column_scene(sand + "permeability = \"0 m/s\"\n" + sand + "permeability = \"0 m/s\"\nn1_60cs = 12\n" +
-                             "[load]\nsurcharge = \"20 kPa\"\n" + dynamic,
-                         "s");
+  const ColumnScene scene = parse_column_scene(sand + "permeability = \"0 m/s\"\n" + sand +
+                                                   "k0 = 0.5\npermeability = \"0 m/s\"\nn1_60cs = 12\n" +
+                                                   "[load]\nsurcharge = \"20 kPa\"\n" + dynamic,
+                                               "s");
   EXPECT_CLOSE_BECAUSE(middle_stress(scene, 1)[2], -20e3 - 1000 * 9.81 * 7.5, 1e-12, "round-off");
   EXPECT_EQ(middle_stress(scene, 1)[0], 0.5 * middle_stress(scene, 1)[2]);
 }
