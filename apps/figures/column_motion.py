@@ -8,6 +8,7 @@ from .common import BLACK, BLUE, GREY, ORANGE, letters, note, plt
 from .drawing import draws
 from .site_response import input_name, spectrum, transfer
 
+LEGEND_COLUMNS, LEGEND_ROW = 4, 0.18  # of the spectra; inches
 PERIODS = np.geomspace(0.02, 5, 160)
 COLOURS = {"x": BLUE, "y": ORANGE, "z": GREY}
 ROOM = 1.75  # limits of a panel over its peak: room for the peak's label between curve and axis
@@ -115,7 +116,10 @@ def finish_spectra(panels, damping, highest_frequency):
         axes.set_xlabel("Period $T$ (s)")
     panels[0, 0].set_ylabel(f"Absolute acceleration SA (m/s$^2$)\n{100 * damping:g} % damping")
     panels[1, 0].set_ylabel("Surface / input")
-    panels[0, 0].legend(loc="best")
+    figure, (handles, labels) = panels[0, 0].figure, panels[0, 0].get_legend_handles_labels()
+    below = (LEGEND_ROW * -(-len(labels) // LEGEND_COLUMNS) + 0.1) / figure.get_figheight()
+    figure.legend(handles, labels, loc="lower center", ncols=LEGEND_COLUMNS)
+    figure.get_layout_engine().set(rect=(0, below, 1, 1 - below))
 
 
 # --- transfer function -----------------------------------------------------------------------------------------------

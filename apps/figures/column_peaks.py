@@ -12,7 +12,7 @@ from .site_response import resistance
 # column of profile.csv, factor, label, unit, whether it jumps between layers, and from which value on it is drawn
 SPECS = (("PGA", 1, "PGA", "m/s$^2$", False, 0),
          ("gamma_max", 100, r"$\gamma_\mathrm{max}$", "%", True, 0),
-         ("CSR", 1, r"CSR = 0.65 $\tau_\mathrm{max}/\sigma_{v0}^\prime$", "", True, 0),
+         ("CSR", 1, r"CSR = 0.65 $\tau/\sigma_{v0}^\prime$", "", True, 0),
          ("ru_max", 1, "Largest $r_u$", "", True, MIN_RU),
          ("PGD", 100, "Displacement", "cm", False, 0))
 
@@ -28,9 +28,10 @@ def row_of(n):
 
 @draws("fig_peaks")
 def peaks(column):
-    """Largest values of all steps over the depth: horizontal acceleration, shear strain, cyclic stress ratio, r_u,
-    horizontal displacement (against a rigid base); a dot marks the largest of each, whose value and depth are above it;
-    dotted: boundaries between layers. profile.csv has them, with velocity, shear stress and settlement."""
+    """Largest values of all steps over the depth: horizontal acceleration, shear strain, cyclic stress ratio (until
+    r_u of the point reaches 0.5), r_u, horizontal displacement (against a rigid base); a dot marks the largest of each,
+    whose value and depth are above it; dotted: boundaries between layers. profile.csv has them, with velocity, shear
+    stress and settlement."""
     table = column.peak_profile
     specs = [spec for spec in SPECS if spec[0] in table and np.nanmax(np.nan_to_num(table[spec[0]])) > spec[-1]]
     if not column.shaken or is_box(column) or not specs:
@@ -52,9 +53,11 @@ def peaks(column):
 
 @draws("fig_liquefaction")
 def liquefaction(column):
-    """Cyclic stress ratio CSR against the cyclic resistance ratio CRR of the layers that have one (of 15 cycles,
-    magnitude 7.5), and the factor of safety CRR/CSR, over the depth; dashed: a factor of 1, dotted: boundaries between
-    layers. Where soil liquefies in the run, its softening limits the CSR."""
+    """Cyclic stress ratio CSR against the cyclic resistance ratio CRR of the layers that have one (magnitude 7.5,
+    15 cycles; multiply CRR by MSF for another), and the factor of safety CRR/CSR, over the depth; dashed: a factor of
+    1, dotted: boundaries between layers. CSR is 0.65 of the largest shear stress until r_u of the point reaches 0.5,
+    because later spikes are those of soil that dilates; 0.65 is for earthquakes, cycles of one amplitude have CSR/0.65.
+    The stress is the resultant of all axes that are shaken, CRR that of shear in one direction."""
     found = resistance(column)
     if found is None or not np.isfinite(found[3]).any():
         return None
@@ -63,8 +66,8 @@ def liquefaction(column):
     for values, label, style in ((csr, "CSR", {"color": BLACK}), (crr, "CRR", {"color": BLUE, "linewidth": 1.6})):
         z, curve = column.broken(depth, values)
         ratios.plot(curve, z, label=label, **style)
-    ratios.set(xlabel="Cyclic stress ratio", xlim=(0, None))
-    ratios.legend()
+    ratios.set(xlabel="CSR, CRR (magnitude 7.5)", xlim=(0, 1.15 * np.nanmax(np.append(csr, crr))))
+    ratios.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0.2, handlelength=1.2)
     z, curve = column.broken(depth, safety)
     factors.plot(curve, z, color=BLACK)
     factors.axvline(1, color=RED, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1.5)

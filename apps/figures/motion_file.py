@@ -15,11 +15,16 @@ from .common import BadInput
 from .site_response import write_at2
 
 PLACES = ("surface", "input", "within")
+LENGTHS = ("m", "cm", "mm")
 
 
 def place(text):
-    """One of PLACES or a depth, m."""
-    return text if text in PLACES else quantity(text if " " in text else float(text))
+    """One of PLACES or a depth, m.   Raises ValueError"""
+    if text in PLACES:
+        return text
+    if text.partition(" ")[2].strip() not in LENGTHS:
+        raise ValueError(text)
+    return quantity(text)
 
 
 def main():
@@ -36,8 +41,9 @@ def main():
     except (BadInput, OSError) as error:
         print(f"error: {error}.", file=sys.stderr)
         return 2
-    except (KeyError, ValueError):
-        print(f"error: --at {words.at}: must be {', '.join(PLACES)} or a depth with its unit, \"5 m\".",
+    except ValueError:
+        print(f"error: --at {words.at}: must be {', '.join(PLACES)} or a depth with its unit ({', '.join(LENGTHS)}), "
+              "\"5 m\".",
               file=sys.stderr)
         return 2
     print(path)

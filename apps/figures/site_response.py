@@ -8,6 +8,7 @@ from .common import BadInput
 
 GRAVITY = 9.80665
 HUSID = (0.05, 0.95)  # shares of the Arias intensity between which the significant duration is
+LIQUEFYING = 0.5  # r_u from which on soil has no frequency of its own, as the CSR of profile.csv has it for stress
 A_LINE = 5  # accelerations in a line of an AT2 file
 
 
@@ -47,6 +48,8 @@ def prefix_at(column, depth):
 
 def write_at2(column, path, where="surface", axis="x"):
     """A motion in the format AT2 of PEER, in g, ten digits each.   Raises BadInput"""
+    if axis not in column.moving:
+        raise BadInput(f"axis = {axis}: the run has no motion along it, but along {', '.join(column.moving) or 'none'}")
     a, dt = motion(column, where, axis)
     words = [f"{value:17.9E}" for value in np.asarray(a) / GRAVITY]
     lines = ["".join(words[k:k + A_LINE]) for k in range(0, len(words), A_LINE)]
@@ -121,11 +124,17 @@ def transfer(column, axis="x", over=None, f=None):
     return f, smoothed_transfer(motion(column, "surface", axis)[0], below, dt, f)
 
 
+def largest_ru(column):
+    """Over the depth, of all steps; 0 where no point has any."""
+    return float(np.nanmax(np.nan_to_num(column.peak_profile["ru_max"]))) if column.peak_profile else 0.0
+
+
 def first_frequency(column, axis="x"):
     """f1 (Hz): where the transfer function over the motion put in is largest below the middle of the first two modes of
-    an elastic layer, 2/T with T = 4H/V_s. Sand that softens has it lower than 1/T. None: no motion says it."""
+    an elastic layer, 2/T with T = 4H/V_s. Sand that softens has it lower than 1/T. None: no motion says it, or sand
+    liquefies, which has no one frequency while it softens and dilates."""
     period = site(column).get("period")
-    if period is None:
+    if period is None or largest_ru(column) >= LIQUEFYING:
         return None
     f, ratio = transfer(column, axis, f=np.geomspace(0.2 / period, 2 / period, 400))
     known = np.isfinite(ratio)
@@ -137,7 +146,13 @@ def first_frequency(column, axis="x"):
 
 def resistance(column):
     """Depth (m), CSR, CRR and factor of safety CRR/CSR of each point of profile.csv, not-a-number in layers without
-    resistance; None if no layer of summary.json has `crr`."""
+    resistance; None if no layer of summary.json has `crr`.
+
+    CSR   0.65 of the largest resultant shear stress, until r_u of the point reaches 0.5, over sigma'_v0: what comes
+          later are spikes of soil that dilates. 0.65 is for earthquakes; cycles of one amplitude have CSR/0.65
+    CRR   of magnitude 7.5 (15 cycles), level ground and shear in one direction; magnitude 7.5: multiply CRR by MSF for
+          another
+    """
     given = [layer.get("crr") for layer in column.summary.get("layers", [])]
     if not column.peak_profile or not any(given):
         return None

@@ -11,6 +11,12 @@ from . import html
 # Keys of a layer that have a column of their own, or describe the mesh.
 ELSEWHERE = {"name", "thickness", "cells", "cell_size", "density", "material", "shear_velocity", "shear_modulus"}
 
+ABOUT_SAFETY = (
+    "CSR is 0.65 of the largest shear stress over σ'_v0, until r_u of the point reaches 0.5: later stress is that of "
+    "soil that dilates. In cycles of one amplitude, for which 0.65 is not meant, it is CSR/0.65. CRR is that of "
+    "magnitude 7.5 (15 cycles): multiply CRR by MSF for another.")
+TWO_AXES = "CSR is that of the resultant of x and y, CRR that of shear in one direction."
+
 
 def name_of(layer, k):
     return layer.get("name") or f"layer {k}"
@@ -41,16 +47,15 @@ def damping(column, layer):
 
 def layers(column):
     """A row for each layer, from the surface down."""
-    ends, rows = np.cumsum([0.0, *(layer["height"] for layer in column.layers)]), []
+    ends, rows, parameters = np.cumsum([0.0, *(layer["height"] for layer in column.layers)]), [], []
     for k, table in enumerate(column.scene.get("layer", [])):
         given = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in table.items() if key not in ELSEWHERE)
         weight = column.layers[k]["density"] * column.water["gravity"] / 1e3
         rows.append((name_of(table, k), f"{ends[k]:.4g} to {ends[k + 1]:.4g}", f"{column.layers[k]['height']:.4g}",
-                     f"{weight:.4g}", speeds(column, k), damping(column, table), table["material"].replace("_", "-"),
-                     given))
-    head = ("Layer", "Depth (m)", "Thickness (m)", "Unit weight (kN/m³)", "V_s (m/s)", "Damping", "Material",
-            "Parameters")
-    return html.table(head, rows, "layers", numbers=(1, 2, 3, 4)) if rows else ""
+                     f"{weight:.4g}", speeds(column, k), damping(column, table), table["material"].replace("_", "-")))
+        parameters.append((name_of(table, k), given))
+    head = ("Layer", "Depth (m)", "Thickness (m)", "Unit weight (kN/m³)", "V_s (m/s)", "Damping", "Material")
+    return html.table(head, rows, "layers", numbers=(1, 2, 3, 4)) + html.properties(parameters) if rows else ""
 
 
 def site(column):
@@ -59,14 +64,17 @@ def site(column):
     if not s:
         return ""
     f1 = {axis: site_response.first_frequency(column, axis) for axis in column.horizontal if len(column.time) > 8}
+    largest = site_response.largest_ru(column)
+    liquefies = [("f1", f"not given: r_u reaches {largest:.2g}, and soil that liquefies has no one frequency")]
     shallow = "not defined: the column is less deep and its base is rigid"
     return html.properties([
         ("V_s, mean by travel time", f"{s['mean_velocity']:.1f} m/s over {s['height']:.4g} m"),
         ("V_s30", f"{s['V_s30']:.1f} m/s" + (", with rock below the column" if s["height"] < 30 else "")
          if s["V_s30"] else shallow),
         ("period 4H/V_s", f"{s['period']:.4g} s ({1 / s['period']:.4g} Hz), by travel time at small strain"),
-        *((f"f1 along {axis}", f"{f:.3g} Hz, largest ratio of surface and {site_response.input_name(column)} motion "
-           f"below {2 / s['period']:.3g} Hz") for axis, f in f1.items() if f)])
+        *((f"f1 along {axis}", f"{f:.2g} Hz, largest ratio of surface and {site_response.input_name(column)} motion "
+           f"below {2 / s['period']:.3g} Hz") for axis, f in f1.items() if f),
+        *(liquefies if largest >= site_response.LIQUEFYING else [])])
 
 
 def motions(column):
@@ -92,17 +100,19 @@ def liquefaction(column):
     """The least factor of safety of each layer with a resistance."""
     found = site_response.resistance(column)
     if found is None:
-        return ""
+        return []
     depth, csr, crr, safety = found
+    ru = column.peak_profile["ru_max"][np.isfinite(column.peak_profile["CSR"])]
     rows = []
     for k, table in enumerate(column.scene.get("layer", [])):
         inside = np.flatnonzero((column.layer_at(depth) == k) & np.isfinite(safety))
         if inside.size:
             at = inside[np.argmin(safety[inside])]
             rows.append((name_of(table, k), f"{depth[at]:.4g}",
-                         *(f"{values[at]:.3g}" for values in (csr, crr, safety))))
-    return html.table(("Layer", "Depth of the least (m)", "CSR there", "CRR", "Factor of safety"), rows, "liquefaction",
-                      numbers=range(1, 5))
+                         *(f"{values[at]:.3g}" for values in (csr, crr, safety, ru))))
+    head = ("Layer", "Depth of the least (m)", "CSR there", "CRR", "Factor of safety", "Largest r_u there")
+    return [html.table(head, rows, "liquefaction", numbers=range(1, 6)), html.paragraph(ABOUT_SAFETY),
+            html.paragraph(TWO_AXES) if len(column.horizontal) > 1 else ""]
 
 
 def sections(column):
@@ -111,4 +121,4 @@ def sections(column):
     return [html.section("Soil layers", layers(column), name="layers"),
             html.section("Site", site(column) if shaken else "", name="site"),
             html.section("Motions", *(motions(column) if shaken else []), name="motions"),
-            html.section("Resistance to liquefaction", liquefaction(column), name="liquefaction")]
+            html.section("Resistance to liquefaction", *liquefaction(column), name="liquefaction")]

@@ -45,8 +45,9 @@ double at_depth(const std::vector<double> &depths, const std::vector<double> &va
 }
 
 /// profile.csv: the largest values of all steps at the points, from the surface down, with what nodes have at these
-/// depths. Surface and base are nodes without strain and stress.   CSR = 0.65 tau_max/sigma'_v0 (Seed & Idriss 1971,
-/// doi:10.1061/JSFEAQ.0001662)   @param settlement  of the nodes at the end against the base, m
+/// depths. Surface and base are nodes without strain and stress.   CSR = 0.65 tau/sigma'_v0 (Seed & Idriss 1971,
+/// doi:10.1061/JSFEAQ.0001662) with the largest tau until r_u reaches ColumnPeaks::demand_ru
+/// @param settlement  of the nodes at the end against the base, m
 void write_profile(const fs::path &path, const ColumnLine &line, const ColumnPeaks &peaks,
                    const std::vector<double> &settlement, const std::vector<double> &vertical_stress)
 {
@@ -66,7 +67,7 @@ void write_profile(const fs::path &path, const ColumnLine &line, const ColumnPea
       const double tau = peaks.line_tau[k], initial = vertical_stress[line.points[k]];
       add_nodes(line.point_depths[k]);
       text += fmt::format(",{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n", peaks.line_gamma[k], tau, initial,
-                          tau / initial, mean_share * tau / initial, peaks.line_ru[k]);
+                          tau / initial, mean_share * peaks.line_demand[k] / initial, peaks.line_ru[k]);
     }
   add_nodes(line.node_depths.back());
   text += ",,,,,,\n";

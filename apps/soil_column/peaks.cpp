@@ -62,7 +62,8 @@ PeakFollower::PeakFollower(const FiniteElementSpace &space, const ColumnLine *li
     surface_[c] = space.find_dof(space.mesh().on_line(0), c);
   if (line)
     {
-      for (std::vector<double> *of_points : {&peaks.line_gamma, &peaks.line_ru, &peaks.line_tau, &peaks.line_secant})
+      for (std::vector<double> *of_points :
+           {&peaks.line_gamma, &peaks.line_ru, &peaks.line_tau, &peaks.line_secant, &peaks.line_demand})
         of_points->assign(line->points.size(), 0.0);
       for (std::size_t q : line->points)
         shear_in_situ_.push_back({in_situ[q][4], in_situ[q][3]});
@@ -119,7 +120,12 @@ void PeakFollower::follow(const Dynamics &run)
   follow_nodes(run.displacement(), 0, 0, peaks.line_displacement);
   const std::span<const Stress> stresses = run.stresses();
   for (std::size_t k = 0; k < line_->points.size(); ++k)
-    raise(peaks.line_tau[k], stresses[line_->points[k]][4], stresses[line_->points[k]][3]);
+    {
+      const Stress &stress = stresses[line_->points[k]];
+      raise(peaks.line_tau[k], stress[4], stress[3]);
+      if (peaks.line_ru[k] < ColumnPeaks::demand_ru)
+        peaks.line_demand[k] = peaks.line_tau[k];
+    }
 }
 
 void PeakFollower::follow_nodes(const Vector &values, double x, double y, std::vector<double> &largest) const

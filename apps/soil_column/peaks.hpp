@@ -12,12 +12,16 @@ void take_max(double &value, std::initializer_list<double *> with, MPI_Comm comm
 /// Largest values of a run, evaluated in every step, not only in those that are recorded.
 struct ColumnPeaks
 {
+  /// Stress beyond it is what liquefying soil answers, in spikes as it dilates, rather than what is asked of it [-].
+  static constexpr double demand_ru = 0.5;
+
   double input = 0, surface = 0;            ///< horizontal acceleration by size, m/s2
   double gamma = 0, gamma_depth = 0;        ///< sqrt(gamma_xz^2 + gamma_yz^2) [-]; m
   double ru = 0, ru_depth = 0, ru_time = 0; ///< [-], m, s
   std::vector<double> line_gamma, line_ru;  ///< at the points of a ColumnLine; empty if the mesh is shared out
   std::vector<double> line_secant; ///< likewise: change of shear stress over strain where that is largest, Pa; 0: none
   std::vector<double> line_tau;    ///< likewise sqrt(tau_xz^2 + tau_yz^2), Pa; 0 unless it is shaken
+  std::vector<double> line_demand; ///< likewise line_tau until r_u of the point reaches `demand_ru`
   // Likewise at its nodes, horizontal by size: m/s2; m/s and m as the unknowns count (from a rigid base).
   std::vector<double> line_acceleration, line_velocity, line_displacement;
 
@@ -32,7 +36,7 @@ struct ColumnPeaks
   static void for_each_line(Peaks &p, const Visit &visit)
   {
     visit("peak_gamma", p.line_gamma), visit("peak_line_ru", p.line_ru), visit("peak_tau", p.line_tau);
-    visit("peak_secant", p.line_secant);
+    visit("peak_secant", p.line_secant), visit("peak_demand", p.line_demand);
     visit("peak_acceleration", p.line_acceleration), visit("peak_velocity", p.line_velocity);
     visit("peak_displacement", p.line_displacement);
   }

@@ -186,11 +186,12 @@ class ColumnResults(Results):
         return self._response("transfer", axis, over, f)
 
     def first_frequency(self, axis="x"):
-        """f1 of the transfer function, Hz, or None."""
+        """f1 of the transfer function, Hz; None also where sand liquefies."""
         return self._response("first_frequency", axis)
 
     def resistance(self):
-        """Depth, CSR, CRR and factor of safety, or None without a layer that has a resistance."""
+        """Depth, CSR, CRR and factor of safety, or None without a layer that has a resistance. CRR is of magnitude 7.5:
+        multiply CRR by MSF for another."""
         return self._response("resistance")
 
     def write_at2(self, path, where="surface", axis="x"):

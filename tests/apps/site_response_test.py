@@ -55,8 +55,11 @@ class SiteResponse(ColumnTest):
             data = {name: file[name][()] for name in file}
         points = np.isfinite(table["gamma_max"])
         self.assertEqual(list(points), [False] + [True] * len(data["depth"]) + [False])
-        tau = np.hypot(data["tau_xz"], data["tau_yz"]).max(axis=0)
-        for name, expected in (("depth", data["depth"]), ("tau_max", tau), ("CSR", 0.65 * tau / data["sigma_v0"]),
+        shear = np.hypot(data["tau_xz"], data["tau_yz"])
+        tau, calm = shear.max(axis=0), np.maximum.accumulate(data["ru"]) < 0.5
+        demand = np.where(calm, shear, 0).max(axis=0)
+        self.assertTrue((demand < tau).any())  # of sand that dilates after it has liquefied
+        for name, expected in (("depth", data["depth"]), ("tau_max", tau), ("CSR", 0.65 * demand / data["sigma_v0"]),
                                ("tau_ratio", tau / data["sigma_v0"]), ("ru_max", data["ru"].max(axis=0)),
                                ("gamma_max", np.hypot(data["gamma_xz"], data["gamma_yz"]).max(axis=0))):
             self.assert_close(table[name][points], expected, 1e-9, "ten digits of the table")
@@ -149,8 +152,11 @@ class SiteResponse(ColumnTest):
             print(f"{name}: error {error:.1e}")
             self.assert_below(error, 1e-9, "ten digits of the record")
         for word, message in (("4 m", r"depth = 4 m: must be one of output.depths \(1 m, 3 m, 5 m\)"),
-                              ("base", "--at base: must be surface, input, within or a depth")):
-            refused = self.run_app("isostat", "motion", self.runs / "rows", "--at", word)
+                              ("base", "--at base: must be surface, input, within or a depth"),
+                              ("3", "--at 3: must be"), ("3 kPa", "--at 3 kPa: must be"),
+                              ("surface", "axis = z: the run has no motion along it, but along x, y")):
+            axis = "z" if word == "surface" else "x"
+            refused = self.run_app("isostat", "motion", self.runs / "rows", "--at", word, "--axis", axis)
             self.assertEqual(refused.returncode, 2)
             self.assertRegex(refused.stderr, message)
 
@@ -168,10 +174,14 @@ class SiteResponse(ColumnTest):
             drawn = {name for name, draw in DRAWING.figures.items() if pages_of(draw(self.column))}
             plt.close("all")
             text = run.Page(run.Results(folder, "soil_column"), DRAWING).text(self.column, "")
+        with mock.patch.dict(self.column.peak_profile, {"ru_max": np.full(len(depth) + 2, 0.49)}):
+            self.assertGreater(site_response.first_frequency(self.column), 0)
+        self.assertIsNone(site_response.first_frequency(self.column))  # sand liquefies
         self.assertIn("fig_liquefaction", drawn)
         self.assertNotIn("fig_expansion", drawn)
         for part in ("<td>sand</td>", "0 to 3", "input (outcrop)", "base (within)", "V_s30", "Arias intensity",
-                     "Factor of safety", "contraction 0.5", "hysteretic"):
+                     "Factor of safety", "multiply CRR by MSF", "resultant of x and y", "f1</th><td>not given",
+                     "contraction 0.5", "hysteretic"):
             self.assertIn(part, text)
         self.assertEqual(re.findall(r"net expansion", text), [])
 
