@@ -176,6 +176,12 @@ std::optional<double> strain_of_strength(const ColumnLayer &layer)
   return strain;
 }
 
+double one_hertz_share(const ColumnLayer &layer)
+{
+  const ZenerBody body(small_strain_damping(layer));
+  return body.at_one_hertz() / body.unrelaxed();
+}
+
 std::unique_ptr<Material> damped_material(const ColumnLayer &layer, std::size_t n_points)
 {
   const double damping = small_strain_damping(layer);

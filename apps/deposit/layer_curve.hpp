@@ -51,4 +51,8 @@ std::optional<double> strain_of_strength(const ColumnLayer &layer);
 /// Iwan with the layer's hyperbola or curve, or Hooke's law, with its damping; shear_velocity and shear_modulus are
 /// those at 1 Hz, so that slow loading finds moduli lower by ZenerBody::at_one_hertz().   @pre elastic or iwan
 std::unique_ptr<Material> damped_material(const ColumnLayer &layer, std::size_t n_points);
+
+/// Modulus at 1 Hz, for which V_s and G of a layer are given, over that of wave_moduli(), which is that of the highest
+/// frequencies (ZenerBody); 1 without damping.   tested: tests/apps/column_damping_test.py
+double one_hertz_share(const ColumnLayer &layer);
 } // namespace isostat

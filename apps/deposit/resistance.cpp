@@ -10,9 +10,14 @@ namespace isostat
 {
 Stress middle_stress(const ColumnScene &scene, std::size_t layer)
 {
-  const ColumnLayer &soil = scene.layers[layer];
-  const double k0 = scene.analysis.kind == AnalysisKind::biaxial ? 1 : soil.k0,
-               vertical = 3 * soil.in_situ_pressure / (1 + 2 * k0);
+  if (scene.analysis.kind == AnalysisKind::biaxial)
+    return {-scene.biaxial.confinement, -scene.biaxial.confinement, -scene.biaxial.confinement, 0, 0, 0};
+  const SoilProfile soil = soil_profile(scene);
+  double z = soil.height() - soil.layers[layer].thickness / 2;
+  for (std::size_t k = 0; k < layer; ++k)
+    z -= soil.layers[k].thickness;
+  const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0; // as in_situ_stress()
+  const double vertical = soil.vertical_effective_stress(z, surcharge), k0 = soil.layers[layer].k0;
   return {-k0 * vertical, -k0 * vertical, -vertical, 0, 0, 0};
 }
 

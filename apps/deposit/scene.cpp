@@ -95,7 +95,10 @@ IwanParameters ColumnLayer::sand() const
   sand.reference_pressure = reference_pressure.value_or(in_situ_pressure);
   sand.poisson_ratio = poisson_ratio;
   if (shear_strength)
-    sand.strength_ratio = *shear_strength / in_situ_pressure;
+    {
+      sand.strength_ratio = *shear_strength / in_situ_pressure;
+      sand.phase_transformation_ratio = std::min(sand.phase_transformation_ratio, sand.strength_ratio);
+    }
   return sand;
 }
 

@@ -110,14 +110,16 @@ def exact_transfer(f, layer, base, mass_damping=0.0, viscosity=0.0, viscous_abov
 
 
 class Terzaghi:
-    """A uniform layer, drained at the surface, under a sudden load q. With D = 2 G (1 - nu)/(1 - 2 nu), S = n/K_f:
+    """A uniform layer of thickness B under a sudden load q, drained at the surface (H = B), or at its base as well
+    (H = B/2). With D = 2 G (1 - nu)/(1 - 2 nu), S = n/K_f:
 
     p0 = q/(1 + S D), c = k/(rho_f g)/(1/D + S), T = c t/H^2, m = (j + 1/2) pi
-    p(z, t) = p0 sum 2/m sin(m z/H) exp(-m^2 T), settlement = (q - p0) H/D + p0 H/D (1 - sum 2/m^2 exp(-m^2 T))
+    p(z, t) = p0 sum 2/m sin(m z/H) exp(-m^2 T), settlement = (q - p0) B/D + p0 B/D (1 - sum 2/m^2 exp(-m^2 T))
     """
 
     def __init__(self, layer, water, load):
-        self.height, self.load = layer["height"], load
+        self.thickness, self.load = layer["height"], load
+        self.height = self.thickness / (2 if water.get("base") == "drained" else 1)  # the longest way of the water
         nu, shear = layer["poisson_ratio"], layer["density"] * layer["velocity"] ** 2
         self.modulus = 2 * shear * (1 - nu) / (1 - 2 * nu)
         storage = layer["porosity"] / water["bulk_modulus"]
@@ -135,4 +137,4 @@ class Terzaghi:
 
     def settlement(self, t):
         left = np.exp(-np.outer(self.time_factor(t), self.m**2)) @ (2 / self.m**2)
-        return self.height / self.modulus * (self.load - self.p0 * left)
+        return self.thickness / self.modulus * (self.load - self.p0 * left)

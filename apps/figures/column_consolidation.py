@@ -50,7 +50,7 @@ def isochrones(column):
     time = time / length
     norm = LogNorm(*(time[rows[[0, -1]]] if rows.size > 1 else np.array([0.5, 2]) * time[rows[0]]))
     time_bar(figure, axes, norm, norm.vmax, unit=unit)
-    fine = np.linspace(0, exact.height, 400) if exact else None
+    fine = np.linspace(0, exact.thickness, 400) if exact else None
     for row in rows:
         axes.plot(pressure[row] / 1e3, depth, color=TIMES(norm(time[row])), linewidth=2.2 if exact else 1.2,
                   label="computed" if row == rows[-1] else None)
@@ -94,7 +94,7 @@ def settlement(column):
         fine = np.geomspace(time[0], time[-1], 400)
         axes.plot(fine / length, 1e3 * exact.settlement(fine), color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)),
                   label="Terzaghi")
-        last = exact.height * exact.load / exact.modulus
+        last = exact.thickness * exact.load / exact.modulus
         report("settlement", np.abs(values - exact.settlement(time)) / last, time, exact, "of the last one")
         axes.legend(loc="lower left")
         factor = length * exact.c / exact.height**2

@@ -107,21 +107,22 @@ def profiles_in_time(column, specs, table, more, width, **line):
 
 @draws("fig_profiles")
 def profiles(column):
-    """Largest shear strain so far, r_u, largest shear stress so far over sigma'_v in situ, against the depth at several
-    times; dashed: r_u = 1, dotted: boundaries between layers."""
+    """Shear strain, r_u, shear stress over sigma'_v in situ, against the depth at several times; strain and stress are
+    the largest of the profiles stored so far, not of all steps (fig_peaks); dashed: r_u = 1, dotted: boundaries between
+    layers."""
     if not column.shaken or not column.profiles:
         return None
     gamma = [column.profile(name) for name in ("gamma_xz", "gamma_yz")]
     tau = [column.profile(name) for name in ("tau_xz", "tau_yz")]
     specs = []
     if any(values is not None for values in gamma):
-        specs.append((100 * so_far(resultant(*gamma)), r"Largest $|\gamma|$ so far (%)", None))
+        specs.append((100 * so_far(resultant(*gamma)), r"Largest $|\gamma|$ of profiles (%)", None))
     if pore_pressure_ratio(column) is not None:
         specs.append((column.profile("ru"), "Pore pressure ratio $r_u$", 1.0))
     if any(values is not None for values in tau):
         ratio = vertical_ratio(column, so_far(resultant(*tau)))
         if ratio is not None:
-            specs.append((ratio, r"Largest $|\tau|/\sigma_{v0}^\prime$ so far", None))
+            specs.append((ratio, r"Largest $|\tau|/\sigma_{v0}^\prime$ of profiles", None))
     if not specs:
         return None
     panels = profiles_in_time(column, specs, column.profiles, [], 2.6 * len(specs) + 1.2, linewidth=1.2)

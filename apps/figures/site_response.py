@@ -48,6 +48,8 @@ def prefix_at(column, depth):
 
 def write_at2(column, path, where="surface", axis="x"):
     """A motion in the format AT2 of PEER, in g, ten digits each.   Raises BadInput"""
+    if not column.shaken:
+        raise BadInput("the run has no motion: nothing was shaken")
     if axis not in column.moving:
         raise BadInput(f"axis = {axis}: the run has no motion along it, but along {', '.join(column.moving) or 'none'}")
     a, dt = motion(column, where, axis)

@@ -37,22 +37,24 @@ def speeds(column, k):
     return f"{velocity:.4g}" if velocity else "-"
 
 
-def damping(column, layer):
-    """Mass damping as a share of critical at the frequency of the site, a_M/(4 pi f)."""
-    period, own = site_response.site(column).get("period"), layer["material"] != "elastic"
-    mass = column.damping["mass_damping"]
-    share = f"{100 * mass * period / (4 * np.pi):.2g} % at {1 / period:.3g} Hz" if mass and period else ""
-    return ", ".join(filter(None, (share, "hysteretic" if own else ""))) or "none"
+def damping(column, k):
+    """Of a layer: mass damping as a share of critical at the frequency of the site, a_M/(4 pi f); its own."""
+    period, layer = site_response.site(column).get("period"), column.summary["layers"][k]
+    mass, own = column.damping["mass_damping"], layer.get("damping")
+    return ", ".join(filter(None, (
+        f"{100 * mass * period / (4 * np.pi):.2g} % at {1 / period:.3g} Hz" if mass and period else "",
+        f"{100 * own:.3g} %" if own else "", "hysteretic" if layer["material"] != "elastic" else ""))) or "none"
 
 
 def layers(column):
     """A row for each layer, from the surface down."""
     ends, rows, parameters = np.cumsum([0.0, *(layer["height"] for layer in column.layers)]), [], []
     for k, table in enumerate(column.scene.get("layer", [])):
-        given = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in table.items() if key not in ELSEWHERE)
+        given = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in table.items()
+                          if key not in ELSEWHERE and not (key == "strength_ratio" and "shear_strength" in table))
         weight = column.layers[k]["density"] * column.water["gravity"] / 1e3
         rows.append((name_of(table, k), f"{ends[k]:.4g} to {ends[k + 1]:.4g}", f"{column.layers[k]['height']:.4g}",
-                     f"{weight:.4g}", speeds(column, k), damping(column, table), table["material"].replace("_", "-")))
+                     f"{weight:.4g}", speeds(column, k), damping(column, k), table["material"].replace("_", "-")))
         parameters.append((name_of(table, k), given))
     head = ("Layer", "Depth (m)", "Thickness (m)", "Unit weight (kN/m³)", "V_s (m/s)", "Damping", "Material")
     return html.table(head, rows, "layers", numbers=(1, 2, 3, 4)) + html.properties(parameters) if rows else ""

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/resolution.hpp"
 
+#include "apps/deposit/layer_curve.hpp"
 #include "apps/deposit/plausible.hpp"
 #include "dem/prepare/relative_density.hpp"
 #include "fem/water/drainage.hpp"
@@ -116,10 +117,13 @@ std::vector<double> shear_velocities(const ColumnScene &scene, const Material &m
   std::vector<WaveModuli> moduli(material.n_points());
   material.wave_moduli(moduli);
   std::vector<double> velocities;
+  std::vector<double> shares;
+  for (const ColumnLayer &layer : scene.layers)
+    shares.push_back(one_hertz_share(layer));
   for (std::size_t point = 0; point < moduli.size(); ++point)
     {
-      const Layer &layer = scene.layers[mesh.cell_layer[point / mesh.points_per_cell()]];
-      velocities.push_back(std::sqrt(moduli[point].s / layer.density));
+      const std::size_t layer = mesh.cell_layer[point / mesh.points_per_cell()];
+      velocities.push_back(std::sqrt(shares[layer] * moduli[point].s / scene.layers[layer].density));
     }
   return velocities;
 }
@@ -168,9 +172,8 @@ std::string softened_elements(const ColumnScene &scene, const std::vector<Carrie
   return fmt::format(
       "the soil of layer.{}{} became so soft that its elements, {:.3g} m high, carried waves up to {:.3g} "
       "Hz only ({} nodes to a wave), and {:.3g} Hz are of interest. See with --check-mesh what depends "
-      "on it, or set layer.{}.cells to {:.0f} or more.",
-      worst, quoted_name(layer), waves[worst].height, carried, nodes_per_wave, frequency, worst,
-      std::ceil(layer.n_cells() * enough * frequency / carried));
+      "on it, and take more cells if it matters; strains of soil that liquefies depend on the mesh at any size.",
+      worst, quoted_name(layer), waves[worst].height, carried, nodes_per_wave, frequency);
 }
 
 std::string coarse_elements(const ColumnScene &scene, const std::vector<double> &velocities, const CellTables &mesh,

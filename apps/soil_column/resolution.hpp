@@ -11,7 +11,7 @@
 
 namespace isostat
 {
-/// Velocity sqrt(G/rho) of shear waves at every point of this rank, of the material's present stiffness and the density
+/// Velocity sqrt(G/rho) of shear waves of 1 Hz at every point of this rank, of the material's present stiffness and the density
 /// of its layer, m/s.   Collective.     tested: tests/apps/soil_column_test.py
 std::vector<double> shear_velocities(const ColumnScene &scene, const Material &material, const CellTables &mesh);
 

@@ -2,6 +2,7 @@
 #include "apps/soil_column/summary.hpp"
 
 #include "apps/common/summary.hpp"
+#include "apps/deposit/layer_curve.hpp"
 #include "apps/deposit/resistance.hpp"
 #include "dem/measure/redundancy.hpp"
 
@@ -81,7 +82,8 @@ Json layers_json(const ColumnScene &scene)
                         {"density", layer.density},
                         {"shear_modulus", layer.from_formula() ? Json(layer.small_strain_modulus()) : Json()},
                         {"in_situ_pressure", layer.in_situ_pressure},
-                        {"in_situ_shear_velocity", layer.from_formula() ? Json(in_situ_velocity(layer)) : Json()}});
+                        {"in_situ_shear_velocity", layer.from_formula() ? Json(in_situ_velocity(layer)) : Json()},
+                        {"damping", small_strain_damping(layer)}});
       if (const std::optional<double> resistance = layer_resistance(scene, k))
         layers.back()["crr"] = *resistance;
       top += layer.thickness;

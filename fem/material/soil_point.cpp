@@ -10,6 +10,7 @@ namespace isostat
 {
 namespace
 {
+constexpr double half_second = 0.5;   // half a cycle of 1 Hz
 constexpr double longest_step = 2e-5; // strain; a sub-step of Iwan
 constexpr double most_strain = 0.2;   // |gamma| that ends a cyclic test; a step that finds no vertical stress
 
@@ -89,6 +90,7 @@ void SoilPoint::shear_once(double gamma, bool drained, double vertical)
 void SoilPoint::shear(double gamma, unsigned steps, bool drained, std::vector<Row> *path)
 {
   const double vertical = stress_[2];
+  material_->set_time_step(half_second / steps);
   for (unsigned k = 0; k < steps; ++k)
     {
       shear_once(gamma / steps, drained, vertical);
@@ -100,6 +102,7 @@ void SoilPoint::shear(double gamma, unsigned steps, bool drained, std::vector<Ro
 bool SoilPoint::shear_to(double tau, bool drained, double limit, std::vector<Row> *path)
 {
   const double vertical = stress_[2], sign = tau < stress_[4] ? -1 : 1, error = 1e-5 * std::abs(vertical);
+  material_->set_time_step(0);
   while (sign * (tau - stress_[4]) > error)
     {
       if (sign * strain_[4] >= limit)
@@ -117,6 +120,7 @@ bool SoilPoint::shear_to(double tau, bool drained, double limit, std::vector<Row
 void SoilPoint::compress_to(double vertical, std::vector<Row> *path)
 {
   const double sign = vertical > -stress_[2] ? -1 : 1; // of eps_zz
+  material_->set_time_step(0);
   const double error = 1e-6 * std::max(vertical, std::abs(stress_[2]));
   for (double gone = 0; sign * (stress_[2] + vertical) < -error; gone += longest_step)
     {

@@ -28,12 +28,13 @@ public:
 
   const Stress &stress() const { return stress_; }                ///< tension positive, Pa
   const std::array<double, 6> &strain() const { return strain_; } ///< since the start, shear as gamma
-  double shear_modulus() const;                                   ///< that of waves now, Pa
+  double shear_modulus() const;                                   ///< that of wave_moduli() now, Pa
   Row row() const;
 
   /// @throws RunFailure  no stress, also from all that follow
   void deform(const Gradient &increment);
-  /// Shears by gamma in equal steps.   @param path  gets a row for each step; null: not kept
+  /// Shears by gamma in equal steps, which take half a second together: half cycles are those of 1 Hz for a material
+  /// whose stress depends on time. All other tests are slow.   @param path  gets a row for each step; null: not kept
   void shear(double gamma, unsigned steps, bool drained, std::vector<Row> *path = nullptr);
   /// Shears until tau, in steps of 2e-5, the last one shorter.
   /// @return false if |gamma| came to `limit` before

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "python/binding/column/soil_point.hpp"
 
+#include "apps/deposit/layer_curve.hpp"
 #include "apps/deposit/resistance.hpp"
 #include "apps/deposit/soil_material.hpp"
 #include "fem/material/soil_point.hpp"
@@ -144,7 +145,9 @@ void add_soil_point(py::module_ &module)
           "strain", [](const LayerPoint &self) { return six_of(self.point.strain()); },
           "Strain since the start in that order, shear as gamma.")
       .def_property_readonly(
-          "shear_modulus", [](const LayerPoint &self) { return self.point.shear_modulus(); }, "That of waves now, Pa.")
+          "shear_modulus",
+          [](const LayerPoint &self) { return one_hertz_share(self.soil) * self.point.shear_modulus(); },
+          "That of waves of 1 Hz now, Pa.")
       .def("deform", &deform, py::arg("gradient"),
            "Applies an increment of d u_i / d x_j, (3, 3).   Returns the stress (6)")
       .def(

@@ -143,7 +143,7 @@ TEST(ColumnScene, VelocityIsThatInSituUnlessAPressureIsGiven)
 {
   const std::string load = "[load]\nsurcharge = \"30 kPa\"\n";
   const ColumnLayer plain = parse_column_scene(sand + undrained + dynamic + load, "s").layers[0];
-  const double pressure = 2.0 / 3 * (30e3 + 1000 * 9.81 * 2.5);
+  const double pressure = (1 + 2 * plain.k0) / 3 * (30e3 + 1000 * 9.81 * 2.5);
   EXPECT_DOUBLE_EQ(plain.in_situ_pressure, pressure);
   EXPECT_EQ(plain.sand().reference_pressure, plain.in_situ_pressure);
   EXPECT_DOUBLE_EQ(Iwan(plain.sand(), 1).shear_modulus(pressure), 2000.0 * 200 * 200);
