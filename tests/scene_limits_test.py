@@ -26,7 +26,7 @@ STATED = {
         "mesh.distributed": "Of dimension 2 or 3", "mesh.points": "at least the degree", "mesh.sides": "dimension 2",
         "mesh.ground_x": "on boundaries between elements", "mesh.ground_z": "the highest being that of all layers",
         "water.drainage": "a column only", "water.lagged_compressibility": "Undrained only",
-        "water.henry": "Above 0 only where the volume may change", "water.air": "boyle needs air",
+        "water.base": "drained only where drainage is", "water.henry": "Above 0 only where the volume may change", "water.air": "boyle needs air",
         "water.table": "Less than the height of the soil", "slope.angle": "Less than the soil can bear",
         "layer.saturation": "Below 1 only below the water table", "layer.density": "Above that of the water",
         "layer.permeability": "Must be given if the drainage is coupled", "layer.cell_size": "At most 1000000 elements",
