@@ -87,7 +87,7 @@ RveSettings changed(RveSettings settings, const Options &options)
 {
   MotionSpec &motion = settings.motion;
   if (options.inertial_number)
-    motion.inertial_number = options.inertial_number;
+    motion.inertial_number = options.inertial_number, settings.stepping.reset();
   motion.damping = options.damping.value_or(motion.damping);
   settings.min_steps = options.min_steps.value_or(settings.min_steps);
   if (options.increment || options.balance)
@@ -242,15 +242,18 @@ int main(int argc, char **argv)
   Options options;
   line.add_option("record", options.record, "folder of a record: paths/d0 and so on of a soil_column run")->required();
   line.add_option("-o,--output", options.output, "results folder (default: RECORD/replay)");
-  line.add_option("--inertial-number", options.inertial_number, "another inertial number, which gives the strain rate")
-      ->check(CLI::Range(1e-9, 1.0));
+  CLI::Option *rate = line.add_option("--inertial-number", options.inertial_number,
+                                      "another inertial number, which gives the strain rate")
+                          ->check(CLI::Range(1e-9, 1.0));
   line.add_option("--min-steps", options.min_steps, "time steps of an increment, at least")
       ->check(CLI::Range(1, 1000000));
   line.add_option("--damping", options.damping, "other local damping")->check(CLI::Range(0.0, 0.99));
   line.add_option("--increment", options.increment, "strain from balance to balance, in place of time steps at a rate")
-      ->check(CLI::Range(1e-9, 1e-3));
+      ->check(CLI::Range(1e-9, 1e-3))
+      ->excludes(rate);
   line.add_option("--balance", options.balance, "tolerance of balance of each grain, likewise")
-      ->check(CLI::Range(1e-8, 0.1));
+      ->check(CLI::Range(1e-8, 0.1))
+      ->excludes(rate);
   line.add_option("--every", options.every, "increments between two rows of micromechanics")
       ->check(CLI::Range(1, 1000000000))
       ->capture_default_str();
