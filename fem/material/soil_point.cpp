@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace isostat
 {
@@ -93,7 +94,8 @@ void SoilPoint::shear(double gamma, unsigned steps, bool drained, std::vector<Ro
   material_->set_time_step(half_second / steps);
   for (unsigned k = 0; k < steps; ++k)
     {
-      shear_once(gamma / steps, drained, vertical);
+      const double begin = std::numbers::pi * k / steps, end = std::numbers::pi * (k + 1) / steps;
+      shear_once(gamma * (std::cos(begin) - std::cos(end)) / 2, drained, vertical);
       if (path)
         path->push_back(row());
     }

@@ -33,8 +33,9 @@ public:
 
   /// @throws RunFailure  no stress, also from all that follow
   void deform(const Gradient &increment);
-  /// Shears by gamma in equal steps, which take half a second together: half cycles are those of 1 Hz for a material
-  /// whose stress depends on time. All other tests are slow.   @param path  gets a row for each step; null: not kept
+  /// Shears by gamma in steps of equal duration, from end to end of a sine of 1 Hz, in half a second: what a material
+  /// whose stress depends on time does in such cycles. All other tests are slow.
+  /// @param path  gets a row for each step; null: not kept
   void shear(double gamma, unsigned steps, bool drained, std::vector<Row> *path = nullptr);
   /// Shears until tau, in steps of 2e-5, the last one shorter.
   /// @return false if |gamma| came to `limit` before

@@ -152,7 +152,8 @@ void add_soil_point(py::module_ &module)
            "Applies an increment of d u_i / d x_j, (3, 3).   Returns the stress (6)")
       .def(
           "shear", &shear, py::arg("gamma"), py::arg("steps") = 100, py::arg("drained") = false,
-          "Simple shear by gamma in equal steps, without lateral strain: at constant volume, or drained, at constant "
+          "Simple shear by gamma in steps of a sine of 1 Hz, without lateral strain: at constant volume, or drained, "
+          "at constant "
           "vertical stress.   Returns the path (steps, 5): gamma, tau, sigma'_v, p', eps_v; the last three positive in "
           "compression, Pa")
       .def("shear_to", &shear_to, py::arg("tau"), py::arg("drained") = false, py::arg("limit") = 0.2,
