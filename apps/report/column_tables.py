@@ -43,7 +43,10 @@ def layers(column):
     """A row for each layer, from the surface down."""
     ends, rows = np.cumsum([0.0, *(layer["height"] for layer in column.layers)]), []
     for k, table in enumerate(column.scene.get("layer", [])):
-        given = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in table.items() if key not in ELSEWHERE)
+        found = column.summary.get("layers") or []
+        used = found[k].get("sand", {}) if k < len(found) else {}  # by its density
+        given = ", ".join(f"{key.replace('_', ' ')} {value:.4g}" if key in used else f"{key.replace('_', ' ')} {value}"
+                          for key, value in (table | used).items() if key not in ELSEWHERE)
         weight = column.layers[k]["density"] * column.water["gravity"] / 1e3
         rows.append((name_of(table, k), f"{ends[k]:.4g} to {ends[k + 1]:.4g}", f"{column.layers[k]['height']:.4g}",
                      f"{weight:.4g}", speeds(column, k), damping(column, table), table["material"].replace("_", "-"),
