@@ -2,7 +2,6 @@
 // Rules that bind several keys of a column's scene.
 #include "apps/deposit/box.hpp"
 #include "apps/deposit/default_mesh.hpp"
-#include "apps/deposit/resistance.hpp"
 #include "apps/deposit/slope.hpp"
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
@@ -146,10 +145,7 @@ void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t 
   if (block && scene.water.drainage == Drainage::dry && layer.permeability > 0)
     document.refuse(prefix + ".permeability", "has no effect in a block if water.drainage is \"dry\". Remove it.");
   if (layer.material == LayerMaterial::iwan)
-    {
-      check_iwan(document, prefix, layer.sand(), layer.sand_density);
-      check_resistance(document, scene, i);
-    }
+    check_iwan(document, prefix, layer.sand(), layer.sand_density);
   if (layer.material == LayerMaterial::iwan && !block && !layer.curve.is_given())
     check_k0(document, prefix, layer.sand(), layer.k0);
   if (layer.material == LayerMaterial::mohr_coulomb)

@@ -2,8 +2,9 @@
 #include "apps/deposit/resistance.hpp"
 
 #include "apps/deposit/layer_curve.hpp"
-#include "base/scene/document.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -50,23 +51,39 @@ ColumnLayer resisting_layer(const ColumnScene &scene, std::size_t layer)
   return soil;
 }
 
-void check_resistance(const SceneDocument &document, const ColumnScene &scene, std::size_t layer)
+std::vector<std::string> resistance_warnings(const ColumnScene &scene)
 {
-  const std::optional<double> ratio = layer_resistance(scene, layer);
-  if (!ratio)
-    return;
-  const ColumnLayer &soil = scene.layers[layer];
-  const Stress stress = middle_stress(scene, layer);
-  const double strength = soil.sand().strength_ratio * (stress[0] + stress[1] + stress[2]) / (3 * stress[2]);
-  const SandDensity &density = soil.sand_density;
-  const char *key = density.n1_60cs ? "n1_60cs" : density.qc1ncs ? "qc1ncs" : "relative_density";
-  if (*ratio >= strength)
-    document.refuse(
-        fmt::format("layer.{}.{}", layer, key),
-        fmt::format(
-            "gives a cyclic resistance of {:.3g} sigma'_v0 in the middle of the layer, where its "
-            "strength is {:.3g} sigma'_v0. Give a higher strength_ratio or shear_strength, a k0 nearer to 1, or a "
-            "lower value.",
-            *ratio, strength));
+  constexpr double most = 0.1; // of K_sigma
+  const SoilProfile profile = soil_profile(scene);
+  const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0;
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    {
+      const std::optional<double> ratio = layer_resistance(scene, k);
+      if (!ratio)
+        continue;
+      const ColumnLayer &soil = scene.layers[k];
+      const Stress stress = middle_stress(scene, k);
+      const double strength = soil.sand().strength_ratio * (stress[0] + stress[1] + stress[2]) / (3 * stress[2]);
+      if (resisting_layer(scene, k).iwan.contraction == 0)
+        warnings.push_back(fmt::format("layer.{} ({}) does not liquefy: its cyclic resistance of {:.3g} sigma'_v0 "
+                                       "comes up to its strength, {:.3g} sigma'_v0, so it does not contract in shear. "
+                                       "Check its strength_ratio.",
+                                       k, soil.name, *ratio, strength));
+      if (scene.analysis.kind == AnalysisKind::biaxial)
+        continue;
+      const double middle = profile.height() - soil.in_situ_depth;
+      const auto factor = [&](double height) {
+        return overburden_factor(soil.sand_density, std::max(1., profile.vertical_effective_stress(height, surcharge)));
+      };
+      double largest = 0;
+      for (const double way : {-soil.thickness / 2, soil.thickness / 2})
+        largest = std::max(largest, std::abs(factor(middle + way) / factor(middle) - 1));
+      if (largest > most)
+        warnings.push_back(fmt::format("layer.{} ({}) has the cyclic resistance of its middle, from which that of its "
+                                       "top or bottom differs by {:.0f} %. Split the layer.",
+                                       k, soil.name, 100 * largest));
+    }
+  return warnings;
 }
 } // namespace isostat

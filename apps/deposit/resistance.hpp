@@ -17,6 +17,7 @@ std::optional<double> layer_resistance(const ColumnScene &scene, std::size_t lay
 /// @throws InputError  naming the layer: no sand has it
 ColumnLayer resisting_layer(const ColumnScene &scene, std::size_t layer);
 
-/// @throws InputError  of a resistance that is above the strength in the middle of the layer
-void check_resistance(const SceneDocument &document, const ColumnScene &scene, std::size_t layer);
+/// Layers that do not liquefy, as their resistance is above their strength, and those in which K_sigma changes by more
+/// than 10 % from the middle to an end.
+std::vector<std::string> resistance_warnings(const ColumnScene &scene);
 } // namespace isostat

@@ -37,20 +37,27 @@ def speeds(column, k):
     return f"{velocity:.4g}" if velocity else "-"
 
 
+def said_of(column, k):
+    """What the summary says of a layer; nothing in one of an older version."""
+    return dict(enumerate(column.summary.get("layers") or [])).get(k, {})
+
+
 def damping(column, k):
     """Of a layer: mass damping as a share of critical at the frequency of the site, a_M/(4 pi f); its own."""
-    period, layer = site_response.site(column).get("period"), column.summary["layers"][k]
-    mass, own = column.damping["mass_damping"], layer.get("damping")
+    period, own = site_response.site(column).get("period"), said_of(column, k).get("damping")
+    mass, material = column.damping["mass_damping"], column.scene["layer"][k]["material"]
     return ", ".join(filter(None, (
         f"{100 * mass * period / (4 * np.pi):.2g} % at {1 / period:.3g} Hz" if mass and period else "",
-        f"{100 * own:.3g} %" if own else "", "hysteretic" if layer["material"] != "elastic" else ""))) or "none"
+        f"{100 * own:.3g} %" if own else "", "hysteretic" if material != "elastic" else ""))) or "none"
 
 
 def layers(column):
     """A row for each layer, from the surface down."""
     ends, rows, parameters = np.cumsum([0.0, *(layer["height"] for layer in column.layers)]), [], []
     for k, table in enumerate(column.scene.get("layer", [])):
-        given = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in table.items()
+        used = said_of(column, k).get("sand", {})  # by its density
+        given = ", ".join(f"{key.replace('_', ' ')} {value:.4g}" if key in used else f"{key.replace('_', ' ')} {value}"
+                          for key, value in (table | used).items()
                           if key not in ELSEWHERE and not (key == "strength_ratio" and "shear_strength" in table))
         weight = column.layers[k]["density"] * column.water["gravity"] / 1e3
         rows.append((name_of(table, k), f"{ends[k]:.4g} to {ends[k + 1]:.4g}", f"{column.layers[k]['height']:.4g}",

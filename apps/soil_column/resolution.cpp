@@ -3,6 +3,7 @@
 
 #include "apps/deposit/layer_curve.hpp"
 #include "apps/deposit/plausible.hpp"
+#include "apps/deposit/resistance.hpp"
 #include "dem/prepare/relative_density.hpp"
 #include "fem/water/drainage.hpp"
 
@@ -229,9 +230,9 @@ std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vec
                                         const CellTables &mesh, const std::array<Motion, 3> &motions)
 {
   std::vector<std::string> warnings = profile_warnings(scene);
-  for (const std::vector<std::string> &of_motions :
-       {motion_size_warnings(scene, motions), motion_warnings(scene, motions)})
-    warnings.insert(warnings.end(), of_motions.begin(), of_motions.end());
+  for (const std::vector<std::string> &more :
+       {resistance_warnings(scene), motion_size_warnings(scene, motions), motion_warnings(scene, motions)})
+    warnings.insert(warnings.end(), more.begin(), more.end());
   if (std::string coarse = coarse_elements(scene, velocities, mesh, motions); !coarse.empty())
     warnings.push_back(std::move(coarse));
   if (const double step = scene.analysis.time_step.value_or(0), steps = scene.output.history_interval / step;

@@ -85,7 +85,15 @@ Json layers_json(const ColumnScene &scene)
                         {"in_situ_shear_velocity", layer.from_formula() ? Json(in_situ_velocity(layer)) : Json()},
                         {"damping", small_strain_damping(layer)}});
       if (const std::optional<double> resistance = layer_resistance(scene, k))
-        layers.back()["crr"] = *resistance;
+        {
+          const IwanParameters sand = resisting_layer(scene, k).iwan;
+          layers.back()["crr"] = *resistance;
+          layers.back()["sand"] = {{"contraction", sand.contraction},
+                                   {"contraction_exponent", sand.contraction_exponent},
+                                   {"fabric_limit", sand.fabric_limit},
+                                   {"fabric_rate", sand.fabric_rate},
+                                   {"reconsolidation", sand.reconsolidation}};
+        }
       top += layer.thickness;
     }
   return layers;
@@ -259,8 +267,14 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
   if (!s.point_depths.empty())
     summary.row("depths of histories", "{} m, the points nearest to those requested",
                 fmt::format("{:.4g}", fmt::join(s.point_depths, ", ")));
-  summary["warnings"] = s.warnings;
-  for (const std::string &warning : s.warnings)
+  std::vector<std::string> warnings = s.warnings;
+  if (const double rise = -s.last.settlement / scene.height(); !s.box_motion && rise > 0.01)
+    warnings.push_back(fmt::format("the surface has risen by {:.2g} % of the height: soil without effective stress was "
+                                   "pulled apart by water from below, which this model does not follow. Do not use "
+                                   "settlements of this run.",
+                                   100 * rise));
+  summary["warnings"] = warnings;
+  for (const std::string &warning : warnings)
     summary.row("", "warning: {}", warning);
   add_end(s, scene, summary);
   return summary;

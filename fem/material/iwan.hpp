@@ -120,7 +120,8 @@ protected:
   {
     strain_so_far,
     largest_strain = strain_so_far + 5, // since it liquefied; 0: it did not
-    volume,                             // volumetric strain since then, compression positive
+    volume,                             // volumetric strain since then, compression positive; of expansion it
+    largest_volume,                     // remembers loosening_limit below the largest
     initial_pressure,
     n_reconsolidation
   };

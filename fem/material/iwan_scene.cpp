@@ -48,7 +48,8 @@ constexpr Key density_in_scenes[] = {
    .range = {1, 37}, .reason = published, .group = "resistance",
    .text = "(N1)60cs of the standard penetration test: at the stress in situ in the middle of the layer it liquefies in "
            "15 cycles of the CRR of Idriss and Boulanger (2008) with K_sigma, and settles then by Yoshimine et al. "
-           "(2006). The CRR must be below the strength. Excludes `contraction`, `fabric_limit` and `fabric_rate`, which follow from it; see "
+           "(2006). With a CRR above its strength it does not liquefy. Excludes "
+           "`contraction`, `fabric_limit` and `fabric_rate`, which follow from it; see "
            "docs/theory_column.md, section 5."},
   {.path = "qc1ncs", .field = member<&SandDensity::qc1ncs>, .presence = Presence::optional, .value = "100",
    .range = {21, 211}, .reason = published, .group = "resistance",

@@ -64,8 +64,9 @@ Iwan::Increment Iwan::increment(const Gradient &h, std::size_t i) const
 }
 
 /// The part of an increment that (25c) takes without a stress, so that p' is back at p0' with its volumetric strain. Of
-/// what K does not give, the part (p0' - p')/p' is left on the way: most is closed while p' is low. The compression
-/// also erases the fabric, to a twentieth when all is closed: the sand resists again.
+/// what K does not give, the part (p0' - p')/p' is left on the way: most is closed while p' is low. It is taken in
+/// compression beyond the largest so far; expansion, and compression back from it, are those of K. It also
+/// erases the fabric, to a twentieth when all is closed: the sand resists again.
 double Iwan::reconsolidate(const double *from, const Increment &d, double plastic, double bulk, double *to) const
 {
   const double p = from[pressure], *old = from + extra_, start = old[initial_pressure];
@@ -76,22 +77,22 @@ double Iwan::reconsolidate(const double *from, const Increment &d, double plasti
       square += now[strain_so_far + c] * now[strain_so_far + c];
     }
   const bool liquefied = old[largest_strain] > 0 || p <= std::max(0.2 * start, from[floor_pressure]);
+  const double before = old[largest_volume]; // `now` may be `old`
   now[largest_strain] = liquefied ? std::max(old[largest_strain], std::sqrt(square)) : 0;
-  now[volume] = liquefied ? old[volume] + d.volumetric : 0;
+  now[volume] = liquefied ? std::max(old[volume] + d.volumetric, before - parameters_.loosening_limit) : 0;
+  now[largest_volume] = std::max(before, now[volume]);
   now[initial_pressure] = start;
   to[fabric] = from[fabric];
-  if (!liquefied || d.volumetric == 0)
+  const double beyond = now[largest_volume] - before;
+  if (beyond <= 0)
     return 0;
   const double all = parameters_.reconsolidation * std::min(0.08, now[largest_strain]);
-  to[fabric] *= std::exp(-3 * std::max(0.0, d.volumetric) / all);
+  to[fabric] *= std::exp(-3 * beyond / all);
   const double left = all - now[volume] - compression(p, start);
-  if (from[loose] > 0) // a gap closes first
+  if (left <= 0 || p >= start || from[loose] > 0) // a gap closes first
     return 0;
-  if (left <= 0)
-    return 0;
-  const double ratio = bulk * left * start / (p * std::max(start - p, 0.05 * start)),
-               most = 1.5 * std::abs(d.volumetric);
-  return std::clamp(d.volumetric - plastic, -most, most) * ratio / (1 + ratio);
+  const double ratio = bulk * left * start / (p * std::max(start - p, 0.05 * start));
+  return std::clamp(d.volumetric - plastic, 0.0, 1.5 * beyond) * ratio / (1 + ratio);
 }
 
 /// Pressure (24), volume (22), fabric (23) and loosening, with the moduli and the stress ratio of the beginning.

@@ -5,6 +5,7 @@
 #include "fem/material/soil_point.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -71,13 +72,19 @@ IwanParameters resisting(const IwanParameters &given, const SandDensity &density
   const double ratio = resistance(density, -in_situ[2]);
   sand.contraction_exponent = 1 / cycles_exponent(density) - 2;
   sand.reconsolidation = reconsolidation_factor(density);
-  sand.fabric_limit = 100;
-  sand.fabric_rate = 150;
+  const double denser = std::clamp((blow_count(density) - 15) / 5, 0.0, 1.0);
+  sand.fabric_limit *= std::pow(12.5, denser);
+  sand.fabric_rate *= std::pow(0.15, denser);
   const auto liquefies_with = [&](double contraction) {
     sand.contraction = contraction;
     SoilPoint point(make(sand), in_situ);
     return point.cyclic_shear(-ratio * in_situ[2], reference_cycles).to_liquefaction <= reference_cycles;
   };
+  if (ratio >= sand.strength_ratio * (in_situ[0] + in_situ[1] + in_situ[2]) / (3 * in_situ[2]))
+    {
+      sand.contraction = 0;
+      return sand;
+    }
   constexpr double least = 1e-4, most = 1e4, factor = 4;
   double high = 1;
   if (liquefies_with(high))
@@ -86,16 +93,22 @@ IwanParameters resisting(const IwanParameters &given, const SandDensity &density
   else
     while (high < most && !liquefies_with(high *= factor))
       ;
-  if (high <= least || high >= most)
-    throw InputError(fmt::format("no contraction gives it a cyclic resistance of {:.3g} at {:.3g} kPa; give a {} "
-                                 "strength_ratio, a k0 nearer to 1, or another density",
-                                 ratio, -in_situ[2] / 1e3, high <= least ? "higher" : "lower"));
+  if (high >= most)
+    throw InputError(fmt::format("no contraction gives it a cyclic resistance of {:.3g} at {:.3g} kPa; give a lower "
+                                 "strength_ratio, or a higher phase_transformation_ratio",
+                                 ratio, -in_situ[2] / 1e3));
+  if (high <= least) // near its strength
+    {
+      sand.contraction = 0;
+      return sand;
+    }
   for (double low = high / factor; high / low > 1.01;)
     if (const double middle = std::sqrt(low * high); liquefies_with(middle))
       high = middle;
     else
       low = middle;
-  sand.contraction = std::stod(fmt::format("{:.3g}", high));
+  const std::string digits = fmt::format("{:.3g}", high);
+  std::from_chars(digits.data(), digits.data() + digits.size(), sand.contraction);
   return sand;
 }
 } // namespace isostat

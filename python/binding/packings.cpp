@@ -21,7 +21,10 @@ namespace
 /// In SI.
 double quantity(const std::string &text, const std::string &dimension)
 {
-  return parse_quantity(text, dimension == "length" ? Dimension::length : Dimension::density).value;
+  const Dimension kind = dimension == "length"     ? Dimension::length
+                         : dimension == "pressure" ? Dimension::pressure
+                                                   : Dimension::density;
+  return parse_quantity(text, kind).value;
 }
 
 Specimen read_stored(const std::string &file)

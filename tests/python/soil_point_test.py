@@ -31,6 +31,69 @@ material = "user"
 [analysis]
 duration = "1 s"
 """
+UNDER_A_CRUST = """title = "a cell of sand under a crust"
+[mesh]
+dimension = 1
+degree = 1
+[water]
+drainage = "undrained"
+[[layer]]
+name = "crust"
+thickness = "4 m"
+cells = 4
+density = "2000 kg/m3"
+permeability = "0 m/s"
+material = "elastic"
+shear_velocity = "400 m/s"
+[[layer]]
+name = "sand"
+thickness = "1 m"
+cells = 1
+density = "2000 kg/m3"
+permeability = "0 m/s"
+material = "iwan"
+shear_velocity = "200 m/s"
+n1_60cs = 15
+[[motion]]
+axis = "x"
+kind = "harmonic"
+amplitude = "0.08 g"
+frequency = "0.5 Hz"
+duration = "45 s"
+ramp = "0.5 s"
+[analysis]
+duration = "45 s"
+[output]
+depths = ["4.5 m"]
+history_interval = "0.01 s"
+"""
+FREE_SURFACE = """title = "sand"
+[mesh]
+dimension = 1
+degree = 2
+[water]
+drainage = "coupled"
+[[layer]]
+name = "sand"
+thickness = "6 m"
+cells = 6
+density = "2000 kg/m3"
+permeability = "1e-3 m/s"
+material = "iwan"
+shear_velocity = "200 m/s"
+n1_60cs = 10
+[[motion]]
+axis = "x"
+kind = "harmonic"
+amplitude = "0.15 g"
+frequency = "1 Hz"
+duration = "15 s"
+ramp = "2 s"
+[analysis]
+duration = "40 s"
+[output]
+depths = ["3 m"]
+"""
 MIDDLE = 2000 * 9.81 * 5  # Pa
 COLUMN = ROOT / "apps/scenes/column/recorded_motion.toml"
 
@@ -102,6 +165,22 @@ class SoilPointTest(FolderTest):
         layers = column.run(short, self.folder / "run", quiet=True).summary["layers"]
         point = column.SoilPoint(short, "loose sand")
         self.assertEqual([layer.get("crr") for layer in layers], [None, point.crr, None])
+
+    def test_a_column_liquefies_as_its_point_does(self):
+        scene_of = column.ColumnScene(UNDER_A_CRUST)
+        rows = column.run(scene_of, self.folder / "undrained", quiet=True).history
+        time, ratio = np.array(rows["time"]), np.array(rows["d0_tau_xz"]) / rows["d0_sigma_v"][0]
+        cycles = 0.5 * time[np.argmax(np.array(rows["d0_ru"]) >= 0.95)]
+        csr = np.ptp(ratio[(time > 1) & (time < 9)]) / 2
+        point = column.SoilPoint(scene_of, "sand")
+        self.assert_close(cycles, point.cyclic_shear(csr * -point.stress[2], 100)[0], 0.2, "waves in the crust, half cycles")
+
+    def test_a_coupled_column_settles(self):
+        """From its surface to its base it does not rise; (25c) would be 73 mm of its largest strains."""
+        found = column.run(column.ColumnScene(FREE_SURFACE), self.folder / "coupled", quiet=True).summary
+        self.assertGreater(found["settlement"], 0.015)
+        self.assertLess(found["settlement"], 0.08)
+        self.assertFalse([text for text in found["warnings"] if "risen" in text])
 
     def test_the_command_leaves_tables_and_a_figure(self):
         folder = self.folder / "tests"

@@ -39,7 +39,7 @@ std::size_t layer_of(const ColumnScene &scene, const std::optional<std::string> 
   for (std::size_t k = 0; k < scene.layers.size(); ++k)
     {
       const ColumnLayer &layer = scene.layers[k];
-      if (name ? layer.name == *name : layer.from_formula())
+      if (name ? layer.name == *name || fmt::format("layer.{}", k) == *name : layer.from_formula())
         {
           if (layer.from_formula())
             return k;

@@ -16,11 +16,11 @@ import pathlib
 
 import numpy as np
 
+from isostat import _core
 from isostat.campaign import command
 from isostat.campaign.folder import CampaignFolder, write_replacing
 from isostat.campaign.resistance.outcome import REFERENCE, Outcome, fit_power_law
 from isostat.campaign.resistance.scenes import parse_ratios
-from isostat.campaign.scenes import in_si
 
 STRAINS = np.geomspace(1e-6, 1e-2, 17)
 STEPS = 50  # of a quarter of a cycle
@@ -41,7 +41,7 @@ class SoilTest:
     modulus: np.ndarray  # (n, 3): amplitude of gamma, G/G_max, damping ratio
     resistance: np.ndarray  # (n, 2): CSR, cycles to liquefaction (inf: not within 200)
     crr: float | None  # CSR that liquefies in 15 cycles; None: it does not liquefy
-    crr_of_scene: float | None  # what n1_60cs, qc1ncs or relative_density ask for
+    crr_of_scene: float | None  # what n1_60cs, qc1ncs or relative_density ask for at the stress in situ, if it is tested
     b: float | None  # of CSR = a N^-b through `resistance`
     reconsolidation: np.ndarray  # (n, 2): largest |gamma|, volumetric strain back to sigma'_v0
     path: np.ndarray  # (n, 5): gamma, tau, sigma'_v, p', eps_v of the test at CRR(15), or of the highest ratio
@@ -98,10 +98,11 @@ def soil_test(scene, layer=None, *, vertical_stress=None, ratios=None):
     fit = fit_power_law([Outcome(ratio, 0, to_liquefaction=cycles if math.isfinite(cycles) else None)
                          for ratio, (cycles, _) in zip(ratios, tests)])
     volumes = [settled(point.fresh(), vertical, crr * vertical, more) for more in MORE] if crr else []
-    path = point.fresh().cyclic_shear((crr or max(ratios, default=0.1)) * vertical, REFERENCE, 5)[1]
+    start = (0, point.stress[4], vertical, -np.mean(point.stress[:3]), 0)
+    path = np.vstack([start, point.fresh().cyclic_shear((crr or max(ratios, default=0.1)) * vertical, REFERENCE, 5)[1]])
     return SoilTest(point.layer, point.material, vertical, point.shear_modulus, np.array(modulus),
                     np.array([(ratio, cycles) for ratio, (cycles, _) in zip(ratios, tests)]).reshape(-1, 2), crr,
-                    point.crr, fit and fit["b"], np.array([v for v in volumes if v]).reshape(-1, 2), path)
+                    None if vertical_stress else point.crr, fit and fit["b"], np.array([v for v in volumes if v]).reshape(-1, 2), path)
 
 
 def table_text(names, rows):
@@ -144,9 +145,10 @@ def leave(folder, title, test, figures):
 
 def pressure(text):
     """"100 kPa" in Pa, for argparse."""
-    if not text.endswith(("Pa", "kPa", "MPa")):
-        raise argparse.ArgumentTypeError(f"{text} must be a pressure with its unit, e.g. \"100 kPa\"")
-    return in_si(text)
+    try:
+        return _core._quantity(text, "pressure")  # pylint: disable=protected-access
+    except _core.InputError as error:
+        raise argparse.ArgumentTypeError(f"{text}: {error}; give e.g. \"100 kPa\"") from error
 
 
 def run(options):
@@ -163,7 +165,7 @@ def main(words: list[str]) -> int:
     line = command.line_of("soil-test", "Element tests of the material of a column's layer: G/G_max and damping, cycles "
                            "to liquefaction, settlement after it")
     command.add_scene(line, "scene file (TOML) of soil_column")
-    line.add_argument("--layer", help="its name (default: the first that is elastic, iwan or mohr_coulomb)")
+    line.add_argument("--layer", help="its name, or layer.2 (default: the first that is elastic, iwan or mohr_coulomb)")
     line.add_argument("--vertical-stress", type=pressure, help='effective, e.g. "100 kPa" (default: that in the middle of the layer)')
     line.add_argument("--ratios", help="cyclic stress ratios tau/sigma'_v0, e.g. 0.10,0.15,0.20 (default: five around that "
                       "of 15 cycles)")

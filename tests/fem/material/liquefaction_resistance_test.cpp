@@ -84,7 +84,7 @@ TEST(LiquefactionResistance, ASandHasWhatItsDensitySays)
       EXPECT_CLOSE_BECAUSE(found_resistance(sand, stress, 15), target, 0.02,
                            "1 % of contraction, and cycles that jump by half of one in dense sand");
       const double less = found_resistance(sand, stress, 30), more = found_resistance(sand, stress, 6);
-      EXPECT_NEAR_BECAUSE(std::log(more / less) / std::log(5), cycles_exponent(density), 0.1,
+      EXPECT_NEAR_BECAUSE(std::log(more / less) / std::log(5), cycles_exponent(density) + 0.02, 0.08,
                           "the exponent 1/(2 + m) is that of small stresses: it rises near the strength");
       for (double part : {0.8, 1.1})
         {
@@ -95,7 +95,7 @@ TEST(LiquefactionResistance, ASandHasWhatItsDensitySays)
           for (const SoilPoint::Row &row : path)
             strain = std::max(strain, std::abs(row[0]));
           test.compress_to(vertical);
-          EXPECT_CLOSE_BECAUSE(test.row()[4], reconsolidation_factor(density) * std::min(0.08, strain), 0.12,
+          EXPECT_CLOSE_BECAUSE(test.row()[4], reconsolidation_factor(density) * std::min(0.08, strain), 0.2,
                                "the limit is 0.2: loosening comes on top of small strains");
         }
     }
@@ -113,11 +113,49 @@ TEST(LiquefactionResistance, ReconsolidatedSandResistsAgain)
   EXPECT_LT(second, first);
 }
 
+/// Liquefied sand is soft in first compression only: it does not expand under p', and volume that comes and goes leaves
+/// p' where it was.
+TEST(LiquefactionResistance, LiquefiedSandIsStiffInExpansion)
+{
+  const Stress stress = level(100e3, 0.5);
+  const double start = 2e5 / 3;
+  for (double n : {10, 20})
+    {
+      SCOPED_TRACE(n);
+      const IwanParameters sand = resisting({.shear_modulus = 80e6}, blows(n), stress);
+      const double tau = 100e3 * resistance(blows(n), 100e3);
+      SoilPoint test = point(sand, stress);
+      test.cyclic_shear(tau, 100, 1);
+      test.shear_to(0, false, 1);
+      for (int k = 0; k < 30000 && test.row()[3] < 1.2 * start; ++k)
+        test.deform({0, 0, 1e-5, 0, 0, 0, 0, 0, 0});
+      for (int k = 0; k < 1000; ++k)
+        test.deform({0, 0, 0, 0, 0, 0, 0, 0, 1e-5});
+      EXPECT_LT(test.row()[3], 0.03 * start); // the floor is 0.02; K alone needs 0.2 %
+      SoilPoint half = point(sand, stress);
+      half.cyclic_shear(tau, 100, 1);
+      half.shear_to(0, false, 1);
+      half.compress_to(50e3);
+      const auto cycles = [&](const Gradient &one, int count) {
+        for (int k = 0; k < 4 * count; ++k)
+          {
+            Gradient h = one;
+            for (double &x : h)
+              x *= k % 4 == 0 || k % 4 == 3 ? 1 : -1;
+            half.deform(h);
+          }
+        return half.row()[3];
+      };
+      const double first = cycles({0, 0, 0, 0, 0, 0, 0, 0, 2e-5}, 1);
+      EXPECT_CLOSE_BECAUSE(cycles({0, 0, 0, 0, 0, 0, 0, 0, 2e-5}, 200), first, 0.2, "shear yielding contracts");
+    }
+}
+
 TEST(LiquefactionResistance, WithoutIt)
 {
   const IwanParameters sand;
   EXPECT_EQ(resisting(sand, {}, level(100e3, 0.5)), sand);
-  EXPECT_THROW(resisting(sand, blows(33), level(100e3, 0.5)), InputError); // CRR = 0.79, strength 0.37
+  EXPECT_EQ(resisting(sand, blows(33), level(100e3, 0.5)).contraction, 0); // CRR = 0.79, strength 0.37
   // what did not liquefy reconsolidates by K alone
   IwanParameters settling = resisting(sand, blows(10), level(100e3, 0.5));
   SoilPoint test = point(settling, level(100e3, 0.5));
