@@ -68,7 +68,7 @@ Backbone fit_hyperbola(unsigned elements);
 /// makes small stresses contract less. With `reconsolidation` a point whose p' has been at a fifth of its
 /// initial value (r_u = 0.95 may leave that much) has (25c) (Yoshimine et al. 2006, Soil Dyn. Earthq. Eng. 26, 253) as
 /// the volumetric strain of its reconsolidation: what loosening and K do not give is closed by compression, most of it
-/// while p' is low, and erases z. gamma_max is the largest |gamma| since the start.
+/// while p' is low, and erases z. gamma_max is the largest |gamma| since it liquefied.
 ///
 /// Tension positive in stresses and strains of the interface. Rotations are not followed: strains are small. There is
 /// no critical void ratio: cyclic mobility tends to loops of one size.
