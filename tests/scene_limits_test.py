@@ -6,7 +6,7 @@ import unittest
 from support import ROOT
 
 SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.cpp", "apps/deposit/plate.cpp",
-           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/deposit/resistance.cpp",
+           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp",
            "apps/deposit/biaxial.cpp", "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp",
            "fem/material/mohr_coulomb_scene.cpp", "fem/solve/newton_scene.cpp")
 # The key of a refusal: "mesh.degree", prefix + ".density", fmt::format("stage.{}.friction", i), key("lot"), and the
@@ -26,13 +26,11 @@ STATED = {
         "mesh.distributed": "Of dimension 2 or 3", "mesh.points": "at least the degree", "mesh.sides": "dimension 2",
         "mesh.ground_x": "on boundaries between elements", "mesh.ground_z": "the highest being that of all layers",
         "water.drainage": "a column only", "water.lagged_compressibility": "Undrained only",
-        "water.base": "drained only where drainage is",
         "water.henry": "Above 0 only where the volume may change", "water.air": "boyle needs air",
         "water.table": "Less than the height of the soil", "slope.angle": "Less than the soil can bear",
         "layer.saturation": "Below 1 only below the water table", "layer.density": "Above that of the water",
         "layer.permeability": "Must be given if the drainage is coupled", "layer.cell_size": "At most 1000000 elements",
-        "layer.material": "", "layer.table": "", "layer.shear_modulus": "", "layer.shear_velocity": "",
-        "layer.k0": "at most 0.9 of the strength",
+        "layer.material": "", "layer.table": "",
         "water.base": 'drained only where drainage is "coupled"',
         "layer.phase_transformation_ratio": "at most `strength_ratio`",
         "layer.cohesion": "Above 0 kPa without friction",

@@ -11,8 +11,8 @@
 
 namespace isostat
 {
-/// Velocity sqrt(G/rho) of shear waves of 1 Hz at every point of this rank, of the material's present stiffness and the density
-/// of its layer, m/s.   Collective.     tested: tests/apps/soil_column_test.py
+/// Velocity sqrt(G/rho) of shear waves of 1 Hz at every point of this rank, of the material's present stiffness and the
+/// density of its layer, m/s.   Collective.     tested: tests/apps/soil_column_test.py
 std::vector<double> shear_velocities(const ColumnScene &scene, const Material &material, const CellTables &mesh);
 
 /// What the elements of a layer carry: waves of a frequency with nodes_per_wave nodes to their length, of the shear
