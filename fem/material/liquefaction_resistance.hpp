@@ -45,8 +45,8 @@ double reconsolidation_factor(const SandDensity &density);
 
 /// The sand with what its density says: contraction_exponent 1/b - 2, reconsolidation, a fabric that grows longer from
 /// N = 15 on (limit 8 to 100, rate 1000 to 150 at N = 20: b of dense sand is met, too), and the contraction with which
-/// cyclic_shear() of SoilPoint liquefies at resistance() in 15 cycles: by bisection to 1 % of contraction (0.4 % of CRR), rounded to three digits,
-/// a few hundredths of a second. A sand without density stays as it is.
+/// cyclic_shear() of SoilPoint liquefies at resistance() in 15 cycles: by bisection to 1 % of contraction (0.4 % of
+/// CRR), rounded to three digits, a few hundredths of a second. A sand without density stays as it is.
 /// @param in_situ  stress at which it is to have this resistance
 /// contraction is 0 if resistance() is not below its strength.
 /// @throws InputError  no contraction gives it: too large a one would be needed
