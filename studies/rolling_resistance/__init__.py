@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which resistance to rolling and twisting gives both the critical slope and the cycles of the paper at D_r = 0.64.
 
-One box of each seed is prepared under the law of the paper; from that same box the tests are run under the others.
+One box of each seed is prepared under the law of the paper, from which the tests are run under all laws; others are
+prepared under the law of their test.
 """
 import dataclasses
 import pathlib
@@ -20,7 +21,9 @@ from studies.tables import write_tables
 DEFAULTS, QUICK = {"seeds": 5}, {"seeds": 1}
 FEW, MANY = 2000, 10_000  # grains; the seed of MANY is the first
 PAGE = "paper"
-LIMITS = (0.5, 0.1, 0.05, 0.02, 0)  # eta_r; 0: no moments at all
+# eta_r (0: no moments of rolling), and whether twisting is resisted; the paper's comes first
+LAWS = tuple((limit, twisting) for limit in (0.5, 0.1, 0.05, 0.02, 0) for twisting in (True, False))
+PAPERS = LAWS[0]
 CYCLES = 60
 SLOPE, ONSET = 1.335, 17  # of the paper: M in compression, cycles at q = 60 kPa
 STAGES = {"cyclic": {"kind": "undrained-cyclic", "deviator_amplitude": "60 kPa",
@@ -36,10 +39,15 @@ def contact(limit, twisting):
     return law | ({"twisting": {"stiffness": 0.3}} if twisting else {})
 
 
-def prepare_box(results, grains, seed):
-    """The box of a seed, under the law of the paper."""
+def name_of(law):
+    limit, twisting = law
+    return f"{limit:g}_{'twisting' if twisting else 'free'}"
+
+
+def prepare_box(results, grains, seed, law):
+    """The box of a seed, of D_r = 0.64 under a law."""
     made = isostat.prepare(isostat.Scene(
-        contact=contact(0.5, True),
+        contact=contact(*law),
         grading={"curve": "karlsruhe-fine-sand", "grains": grains, "seed": seed,
                  "cloud_edge": cloud_edge(grains, ".12g")},
         specimen={"domain": "rigid-box", "pressure": "200 kPa", "relative_density": 0.64, "e_min": 0.568,
@@ -53,12 +61,13 @@ class Specimen:
     output: pathlib.Path  # folder of the study
     grains: int
     seed: int
+    law: tuple = PAPERS  # it is made under
     kind = "prepare"
     function = staticmethod(prepare_box)
 
     @property
     def name(self):
-        return f"specimen_n{self.grains}_s{self.seed}"
+        return f"specimen{'' if self.law == PAPERS else '_' + name_of(self.law)}_n{self.grains}_s{self.seed}"
 
     @property
     def specimen(self):
@@ -69,7 +78,7 @@ class Specimen:
         return self.output / "runs" / self.name / "specimen.h5"
 
     def arguments(self):
-        return {"grains": self.grains, "seed": self.seed}
+        return {"grains": self.grains, "seed": self.seed, "law": self.law}
 
     def estimated_seconds(self):
         return estimate(self.kind, self.grains)
@@ -79,18 +88,22 @@ class Specimen:
 class Test:
     kind: str  # cyclic, compression
     specimen: Specimen
-    limit: float
-    twisting: bool
+    law: tuple
+
+    @property
+    def own(self):
+        """Whether its box was made under its law, which is not the paper's."""
+        return self.specimen.law != PAPERS
 
     @property
     def name(self):
-        return (f"{self.kind}_{self.limit:g}_{'twisting' if self.twisting else 'free'}_n{self.specimen.grains}"
+        return (f"{self.kind}{'_own' if self.own else ''}_{name_of(self.law)}_n{self.specimen.grains}"
                 f"_s{self.specimen.seed}")
 
     def scene(self):
         if not self.specimen.file.is_file():
             return None
-        return isostat.Scene(title=self.name, contact=contact(self.limit, self.twisting), stage=[STAGES[self.kind]],
+        return isostat.Scene(title=self.name, contact=contact(*self.law), stage=[STAGES[self.kind]],
                              specimen={"domain": "rigid-box", "file": str(self.specimen.file)},
                              output={"snapshots": "none", "paraview": False})
 
@@ -104,9 +117,10 @@ def estimate(kind, grains):
 
 def runs(options):
     boxes = [Specimen(options.output, FEW, seed) for seed in range(1, options.seeds + 1)]
-    boxes += [] if options.quick else [Specimen(options.output, MANY, 1)]
-    return boxes + [Test(kind, box, limit, twisting) for kind in STAGES for box in boxes for limit in LIMITS
-                    for twisting in (True, False)]  # one cut short has all laws for its first seeds
+    own = [Specimen(options.output, FEW, seed, law) for seed in range(1, 1 + min(options.seeds, 3)) for law in LAWS[1:]]
+    many = [] if options.quick else [Specimen(options.output, MANY, 1)]
+    return [*boxes, *own, *(Test("cyclic", box, box.law) for box in own), *many,
+            *(Test(kind, box, law) for kind in STAGES for box in boxes + many for law in LAWS)]
 
 
 def found(store, run):
@@ -123,20 +137,20 @@ def report(store, planned, folder):
     values = {}
     for run in planned:
         if run.kind != "prepare" and store.is_done(run):
-            law = values.setdefault((run.specimen.grains, run.limit, run.twisting), {})
+            law = values.setdefault((run.specimen.grains, *run.law, run.own), {})
             law.setdefault(run.kind, []).append(found(store, run))
     write_tables(folder, {"rolling_resistance": (
-        ["grains", "eta_r", "twisting", "q/p' at 18 to 20 %", "s.e.", "seeds", f"liquefied in {CYCLES} cycles",
-         "cycles, median"],
+        ["grains", "eta_r", "twisting", "box made under", "q/p' at 18 to 20 %", "s.e.", "seeds",
+         f"liquefied in {CYCLES} cycles", "cycles, median"],
         [row(*case, **one) for case, one in values.items()])})
     draw(values, folder / "rolling_resistance.png")
 
 
-def row(grains, limit, twisting, compression=(), cyclic=()):
+def row(grains, limit, twisting, own, compression=(), cyclic=()):
     mean, _, error, n = ensemble(compression)
     slope = [f"{value:.3f}".replace("nan", "") for value in (mean, error)]
     median = np.median(cyclic) if len(cyclic) else np.nan
-    return [grains, f"{limit:g}", "yes" if twisting else "no", *slope, n,
+    return [grains, f"{limit:g}", "yes" if twisting else "no", "this law" if own else "the paper's", *slope, n,
             f"{np.isfinite(cyclic).sum()} of {len(cyclic)}", f"{median:.1f}" if np.isfinite(median) else f"> {CYCLES}"]
 
 
@@ -146,7 +160,7 @@ def draw(values, path):
     for grains, marker in ((FEW, "o"), (MANY, "s")):
         for twisting, colour in ((True, BLUE), (False, ORANGE)):
             points = [(limit, np.mean(one["compression"]), min(np.median(one["cyclic"]), CYCLES))
-                      for (n, limit, twists), one in values.items()
+                      for (n, limit, twists, _), one in values.items()
                       if (n, twists) == (grains, twisting) and len(one) == 2]
             if points:
                 axes.plot([p[1] for p in points], [p[2] for p in points], marker + "-", color=colour, mfc="none",
