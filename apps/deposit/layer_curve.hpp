@@ -53,6 +53,6 @@ std::optional<double> strain_of_strength(const ColumnLayer &layer);
 std::unique_ptr<Material> damped_material(const ColumnLayer &layer, std::size_t n_points);
 
 /// Modulus at 1 Hz, for which V_s and G of a layer are given, over that of wave_moduli(), which is that of the highest
-/// frequencies (ZenerBody); 1 without damping.   tested: tests/apps/column_damping_test.py
+/// frequencies (ZenerBody); 1 without damping.   tested: tests/python/soil_point_test.py
 double one_hertz_share(const ColumnLayer &layer);
 } // namespace isostat

@@ -10,7 +10,7 @@ import numpy as np
 
 from package import BINARIES, FolderTest, ROOT, TIME_LIMIT, isostat
 from isostat import column
-from isostat.campaign.soil_test import soil_test
+from isostat.campaign.soil_test import secant_and_damping, soil_test
 
 SCENE = """title = "one layer"
 [water]
@@ -121,6 +121,12 @@ class SoilPointTest(FolderTest):
                          "shear_to() lands within 1e-5 of sigma'_v")
         at_100 = column.SoilPoint(scene(), "sand", 100e3)
         self.assert_close(at_100.stress[2], -100e3, 1e-12, "round-off")
+
+    def test_modulus_and_damping_of_small_strain_are_those_of_1_hertz(self):
+        damped = column.SoilPoint(scene(material="elastic", damping=0.02))
+        self.assert_close(damped.shear_modulus, 80e6, 1e-9, "round-off")
+        modulus, damping = secant_and_damping(damped, 1e-6)
+        self.assert_near([modulus / 80e6, damping / 0.02], [1, 1], 0.02, "1.6 % of least squares, third cycle")
 
     def test_mistakes_are_refused(self):
         for arguments, words in (((scene(), "snad"), 'no layer of this name. Give one of "sand", "grains"'),
