@@ -51,7 +51,15 @@ ColumnLayer resisting_layer(const ColumnScene &scene, std::size_t layer)
   return soil;
 }
 
-std::vector<std::string> resistance_warnings(const ColumnScene &scene)
+std::vector<ColumnLayer> resisting_layers(const ColumnScene &scene)
+{
+  std::vector<ColumnLayer> layers;
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    layers.push_back(resisting_layer(scene, k));
+  return layers;
+}
+
+std::vector<std::string> resistance_warnings(const ColumnScene &scene, const std::vector<ColumnLayer> &layers)
 {
   constexpr double most = 0.1; // of K_sigma
   const SoilProfile profile = soil_profile(scene);
@@ -65,7 +73,7 @@ std::vector<std::string> resistance_warnings(const ColumnScene &scene)
       const ColumnLayer &soil = scene.layers[k];
       const Stress stress = middle_stress(scene, k);
       const double strength = soil.sand().strength_ratio * (stress[0] + stress[1] + stress[2]) / (3 * stress[2]);
-      if (resisting_layer(scene, k).iwan.contraction == 0)
+      if (layers[k].iwan.contraction == 0)
         warnings.push_back(fmt::format("layer.{} ({}) does not liquefy: its cyclic resistance of {:.3g} sigma'_v0 "
                                        "comes up to its strength, {:.3g} sigma'_v0, so it does not contract in shear. "
                                        "Check its strength_ratio.",

@@ -16,8 +16,9 @@ std::optional<double> layer_resistance(const ColumnScene &scene, std::size_t lay
 /// The layer with the sand that has this resistance, see resisting(); as it is if it has none.
 /// @throws InputError  naming the layer: no sand has it
 ColumnLayer resisting_layer(const ColumnScene &scene, std::size_t layer);
+std::vector<ColumnLayer> resisting_layers(const ColumnScene &scene); ///< all
 
 /// Layers that do not liquefy, as their resistance is above their strength, and those in which K_sigma changes by more
-/// than 10 % from the middle to an end.
-std::vector<std::string> resistance_warnings(const ColumnScene &scene);
+/// than 10 % from the middle to an end.   @param layers  resisting_layers()
+std::vector<std::string> resistance_warnings(const ColumnScene &scene, const std::vector<ColumnLayer> &layers);
 } // namespace isostat

@@ -137,9 +137,7 @@ bool has_weak_zone(const ColumnScene &scene)
 /// What points are made of: the layers, then what they are in a weak zone.
 std::vector<ColumnLayer> soils_of(const ColumnScene &scene)
 {
-  std::vector<ColumnLayer> soils;
-  for (std::size_t k = 0; k < scene.layers.size(); ++k)
-    soils.push_back(resisting_layer(scene, k));
+  std::vector<ColumnLayer> soils = resisting_layers(scene);
   if (has_weak_zone(scene))
     for (std::size_t k = 0; k < scene.layers.size(); ++k)
       soils.push_back(weakened(soils[k], scene.biaxial.weak));
@@ -214,6 +212,7 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
   const std::vector<ColumnLayer> soils = soils_of(scene);
   const std::vector<std::vector<std::size_t>> points = points_of(scene, mesh, soils.size());
   SoilMaterial soil;
+  soil.layers.assign(soils.begin(), soils.begin() + static_cast<std::ptrdiff_t>(scene.layers.size()));
   std::vector<CompositeMaterial::Part> parts;
   std::vector<SpecimenRequest> requests;
   std::vector<std::string> names;

@@ -37,6 +37,7 @@ public:
 struct SoilMaterial
 {
   std::unique_ptr<TimedMaterial> material;
+  std::vector<ColumnLayer> layers;        ///< of the scene, resisting_layers()
   const RveMaterial *grains = nullptr;    ///< the part of it that is made of packings; null if there is none
   const Nonlocal *nonlocal = nullptr;     ///< all of it, if it has a length
   std::vector<std::size_t> grains_places; ///< points of the mesh that have them, in the order of `grains`

@@ -24,7 +24,7 @@ public:
         velocities_(shear_velocities(scene_, *soil_.material, space_))
   {
     if constexpr (std::is_same_v<Solver, Dynamics>)
-      this->warnings_ = scene_warnings(scene_, velocities_, space_, motions_);
+      this->warnings_ = scene_warnings(scene_, soil_.layers, velocities_, space_, motions_);
     if (std::string coarse = coarse_drainage(scene_, space_, *soil_.material); !coarse.empty())
       this->warnings_.push_back(std::move(coarse));
     this->restore();
@@ -91,6 +91,7 @@ protected:
     summary.motion_depths = files_.history().motion_depths();
     if (files_.line())
       summary.node_depths = files_.line()->node_depths;
+    summary.layers = soil_.layers;
     summary.warnings = this->warnings_;
     summary.last = files_.history().state;
     summary.expansions = files_.history().expansions();

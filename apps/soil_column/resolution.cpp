@@ -226,12 +226,13 @@ std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &
       slow ? "analysis.first_time" : "load.ramp", bound.time);
 }
 
-std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<double> &velocities,
-                                        const CellTables &mesh, const std::array<Motion, 3> &motions)
+std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<ColumnLayer> &layers,
+                                        const std::vector<double> &velocities, const CellTables &mesh,
+                                        const std::array<Motion, 3> &motions)
 {
   std::vector<std::string> warnings = profile_warnings(scene);
   for (const std::vector<std::string> &more :
-       {resistance_warnings(scene), motion_size_warnings(scene, motions), motion_warnings(scene, motions)})
+       {resistance_warnings(scene, layers), motion_size_warnings(scene, motions), motion_warnings(scene, motions)})
     warnings.insert(warnings.end(), more.begin(), more.end());
   if (std::string coarse = coarse_elements(scene, velocities, mesh, motions); !coarse.empty())
     warnings.push_back(std::move(coarse));

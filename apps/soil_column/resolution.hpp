@@ -64,7 +64,9 @@ std::vector<std::string> motion_warnings(const ColumnScene &scene, const std::ar
 
 /// What a user should know before a dynamic run: motion_warnings(), coarse_elements(), rows that are not as far apart
 /// as the scene says, and a motion along z that makes no waves.
-/// Collective.   tested: tests/apps/soil_column_test.py, tests/apps/column_water_test.py
-std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<double> &velocities,
-                                        const CellTables &mesh, const std::array<Motion, 3> &motions);
+/// Collective.   @param layers  SoilMaterial::layers
+/// tested: tests/apps/soil_column_test.py, tests/apps/column_water_test.py
+std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vector<ColumnLayer> &layers,
+                                        const std::vector<double> &velocities, const CellTables &mesh,
+                                        const std::array<Motion, 3> &motions);
 } // namespace isostat

@@ -67,8 +67,8 @@ void add_velocities(const ColumnScene &scene, Summary &summary)
               velocities.size() > 1 ? "the layers" : "the layer");
 }
 
-/// From the surface down.
-Json layers_json(const ColumnScene &scene)
+/// From the surface down.   @param used  as they were run
+Json layers_json(const ColumnScene &scene, const std::vector<ColumnLayer> &used)
 {
   Json layers = Json::array();
   double top = 0;
@@ -86,7 +86,7 @@ Json layers_json(const ColumnScene &scene)
                         {"damping", small_strain_damping(layer)}});
       if (const std::optional<double> resistance = layer_resistance(scene, k))
         {
-          const IwanParameters sand = resisting_layer(scene, k).iwan;
+          const IwanParameters &sand = used[k].iwan;
           layers.back()["crr"] = *resistance;
           layers.back()["sand"] = {{"contraction", sand.contraction},
                                    {"contraction_exponent", sand.contraction_exponent},
@@ -151,7 +151,7 @@ void add_scene(const ColumnSummary &s, const ColumnScene &scene, Summary &summar
 {
   summary["analysis"] = analysis_names[static_cast<int>(scene.analysis.kind)];
   summary["base"] = scene.base.compliant() ? "compliant" : "rigid";
-  summary["layers"] = layers_json(scene);
+  summary["layers"] = layers_json(scene, s.layers);
   summary["mass_damping"] = scene.analysis.mass_damping;
   summary["spectrum_damping"] = scene.output.spectrum_damping;
   summary["requested_depths"] = scene.output.depths;

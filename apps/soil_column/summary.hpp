@@ -32,6 +32,7 @@ struct ColumnSummary
   double steps = 0, time_step = 0;   ///< s; 0 in a consolidation
   std::vector<double> point_depths;  ///< of the points whose histories were asked for, m
   std::vector<double> motion_depths; ///< of the nodes next to them, whose accelerations are recorded, m
+  std::vector<ColumnLayer> layers;   ///< SoilMaterial::layers
   std::vector<std::string> warnings; ///< of what may mislead
   ColumnPeaks peaks;
   std::vector<double> node_depths;         ///< of the peaks at nodes, m; empty if the mesh is shared out

@@ -47,7 +47,10 @@ TEST(LayerResistance, BelowTheWaterAndASurcharge)
 
 TEST(LayerResistance, Warnings)
 {
-  const auto warnings = [](const char *keys) { return resistance_warnings(parse_column_scene(with(keys), "s")); };
+  const auto warnings = [](const char *keys) {
+    const ColumnScene scene = parse_column_scene(with(keys), "s");
+    return resistance_warnings(scene, resisting_layers(scene));
+  };
   EXPECT_TRUE(warnings("n1_60cs = 12").empty());
   ASSERT_EQ(warnings("n1_60cs = 30").size(), 1);
   EXPECT_NE(warnings("n1_60cs = 30")[0].find("comes up to its strength"), std::string::npos);
