@@ -173,7 +173,7 @@ class Column:
                       "gravity": quantity(water.get("gravity"), 9.81),
                       "bulk_modulus": quantity(water.get("bulk_modulus"), 2.2e9),
                       "relative_viscosity": float(water.get("relative_viscosity", 1)),
-                      "henry": float(water.get("henry", 0))}
+                      "henry": float(water.get("henry", 0)), "base": water.get("base", "closed")}
 
     def has(self, name):
         return name in self.columns

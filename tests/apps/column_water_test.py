@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The water of a column as a user sees it: expansion under a cap, air, three components of motion, viscosity."""
 
+import re
+
 import h5py
 import numpy as np
 
@@ -70,6 +72,17 @@ class Drainage(ColumnTest):
                 self.assertIn("the cells of layer.0 (clay) where water drains, 0.8 m high, do not show", result.stderr)
                 self.assertIn(f"Set layer.0.cell_size to {0.37 * skin:.2g} m or less, or disregard pore pressures "
                               "within three cells, 2.4 m, of", result.stderr)
+
+
+    def test_figures_know_the_drained_base(self):
+        """Terzaghi's series next to the figures is that of half the thickness."""
+        scene = self.write("both.toml", CLAY.replace("20000 d", "2000 d"))
+        self.assert_done(self.run_app("soil_column", scene, "-o", "both", "-q",
+                                      *settings(water__base="drained", layer__0__cell_size="0.2 m")))
+        log = (self.folder / "both/figures.log").read_text(encoding="utf-8")
+        found = [float(number) for number in re.findall(r"largest difference from Terzaghi's series (\S+)", log)]
+        self.assertEqual(len(found), 2, log)  # pore pressure, settlement
+        self.assert_below(max(found), 0.02, "20 steps in time; one-way drainage is off by 1")
 
 
 class Water(ColumnTest):
