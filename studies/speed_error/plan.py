@@ -118,7 +118,7 @@ def runs(n_seeds):
         if seed <= 4:
             result += [Run("monotonic", seed, "rigid-box", setting) for setting in ONE_WAY[:-1]]
             result += [Run("network", seed, domain, setting) for domain in DOMAINS for setting in BY_MARGIN]
-    result += [Run(kind, 1, "rigid-box", setting, MANY) for kind, setting in
+    result += [Run(kind, seed, "rigid-box", setting, MANY) for seed in (1, 2, 3) for kind, setting in
                (("prepare", DYNAMIC), ("path", FINEST), ("path", TIGHT), ("path", INCREMENTS[1]), ("cyclic", DYNAMIC),
                 ("cyclic", SLOW), ("cyclic", STATIC))]
     result += [Run("monotonic", seed, "rigid-box", ONE_WAY[-1]) for seed in (1, 2)]
