@@ -21,6 +21,7 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
   settings.mass_damping = scene.analysis.mass_damping;
   settings.viscosity = scene.analysis.viscosity;
   settings.viscous_above = scene.analysis.highest_frequency;
+  settings.large_strain = scene.analysis.large_strain;
   settings.drainage = scene.water.drainage;
   settings.lagged_compressibility = scene.water.lagged_compressibility;
   settings.base = scene.base;

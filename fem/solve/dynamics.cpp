@@ -43,6 +43,8 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
       viscosity_.emplace(settings_.viscosity, settings_.viscous_above, space_.n_points());
       total_ = stresses_;
     }
+  if (settings_.large_strain)
+    deformed_ = Deformation{space_, u_, space_.frequencies(space_)};
   const double stable = stable_step();
   time_step_ = settings_.time_step > 0 ? settings_.time_step : settings_.safety * stable;
   if (settings_.time_step == 0 && settings_.multiple > time_step_)
@@ -92,7 +94,7 @@ void Dynamics::prepare_steps()
   if (viscosity_)
     viscosity_->set_time_step(time_step_);
   if (settings_.drainage == Drainage::coupled)
-    pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_);
+    make_pressure_system(space_);
 }
 
 /// Unknowns of cells below the water table, where an undrained column keeps its volume.
@@ -183,6 +185,8 @@ void Dynamics::for_each_field(Self &self, Visit &&visit)
   visit("initial_stress", self.initial_stresses_);
   visit("minus_reference_force", self.minus_reference_);
   visit("lagged_pressure", self.lagged_pressure_);
+  if (self.deformed_)
+    visit("geometry_found_at", self.deformed_->found_at);
   if (self.viscosity_)
     SkeletonViscosity::for_each_field(*self.viscosity_, visit);
   visit.sum("kinetic", self.energy_.kinetic);
@@ -213,6 +217,8 @@ void Dynamics::restore(const SolverState &state)
     prepare_steps();
   if (viscosity_)
     material_.wave_moduli(moduli_); // for the next step
+  if (deformed_)
+    find_deformation();
   step_ = state.step;
 }
 } // namespace isostat

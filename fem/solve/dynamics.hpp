@@ -25,6 +25,7 @@ struct DynamicsSettings
   double mass_damping = 0;   ///< a_M, 1/s: force -a_M M v, v as the unknown counts it (relative to a rigid base)
   double viscosity = 0;      ///< beta of SkeletonViscosity, s; 0: none
   double viscous_above = 25; ///< f_c, Hz
+  bool large_strain = false; ///< updated Lagrangian: see Dynamics
   Drainage drainage = Drainage::dry;
   bool lagged_compressibility = false; ///< undrained: volume strain -dp/Q of the step before, instead of none
   Base base = {};
@@ -53,6 +54,13 @@ struct DynamicsEnergy
 /// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is for the
 /// pressure (PressureSystem), constant and factorised once. The skeleton alone limits dt; water of any stiffness and
 /// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
+///
+/// With large_strain sigma' is Cauchy's stress in the cells as they are: F, G, H, L and S are integrals over the
+/// deformed cells (FiniteElementSpace::deform()), the increments of displacement gradient that the material gets refer
+/// to the cells at the start of the step. M stays, as mass does. Those of the water and the stable step are found anew
+/// when a displacement gradient since the last time exceeds 0.2 %. It is the material that turns its stress with the
+/// soil: packings do, formulas do not. tested: tests/fem/solve/large_strain_test.cpp
+///
 /// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,
 /// doi:10.1061/JMCEA3.0001144). Undrained, soil below the water table keeps its volume (u_z = 0), soil above it is
 /// dry and moves vertically, too. The state at the start is taken as in equilibrium: a frozen column stays still bit
@@ -116,6 +124,11 @@ private:
   void add_lagged_compression();
   void check_lagged_compression() const;
   void check_motion();
+  // large_strain.cpp
+  const CellGeometry &cells() const { return deformed_ ? deformed_->now : space_; }
+  void make_pressure_system(const CellGeometry &at);
+  void find_deformation();
+  void follow_deformation();
 
   const FiniteElementSpace &space_;
   Material &material_;
@@ -132,6 +145,15 @@ private:
   DynamicsEnergy half_way_; ///< of this rank, at time() - dt/2
   DynamicsEnergy energy_;   ///< of this rank at time() - dt
   double exchanged_ = 0;    ///< sum of |external work|, what an explosion is measured by
+
+  /// Large strain: where cells are, and what was found where they were `found_at`.
+  struct Deformation
+  {
+    CellGeometry now;
+    Vector found_at;                 ///< displacement, m
+    std::vector<double> frequencies; ///< of the cells there; and pressure_system_
+  };
+  std::optional<Deformation> deformed_;
 
   // constant
   Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C

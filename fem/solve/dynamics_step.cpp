@@ -34,7 +34,7 @@ void Dynamics::find_loads()
   force_ = 0; // F(sigma') - F(sigma'_0) of (4), (7)
   if (viscosity_)
     viscosity_->add(stresses_, total_);
-  space_.add_internal_force(viscosity_ ? total_ : stresses_, force_);
+  space_.add_internal_force(cells(), viscosity_ ? total_ : stresses_, force_);
   // the difference of two whole sums: zero bit for bit as long as the stresses are those of the start
   const std::size_t n = force_.locally_owned_size();
   for (std::size_t i = 0; i < n; ++i)
@@ -113,7 +113,9 @@ void Dynamics::move()
 double Dynamics::stable_step() const
 {
   material_.wave_moduli(moduli_);
-  const double largest = space_.max_frequency_squared(moduli_, settings_.drainage == Drainage::undrained);
+  const bool shear_only = settings_.drainage == Drainage::undrained;
+  const double largest = deformed_ ? space_.max_frequency_squared(deformed_->frequencies, moduli_, shear_only)
+                                   : space_.max_frequency_squared(moduli_, shear_only);
   return viscosity_ ? SkeletonViscosity::stable_step(largest, settings_.viscosity) : 2 / std::sqrt(largest);
 }
 
@@ -170,7 +172,7 @@ void Dynamics::strain_points()
 {
   if (space_.shared_out())
     v_.update_ghost_values();
-  space_.gradients(v_, increments_, time_step_);
+  space_.gradients(cells(), v_, increments_, time_step_);
   if (space_.shared_out())
     v_.zero_out_ghost_values();
   if (viscosity_)
@@ -179,6 +181,8 @@ void Dynamics::strain_points()
     add_lagged_compression();
   material_.trial(increments_, stresses_);
   material_.commit();
+  if (deformed_)
+    follow_deformation();
 }
 
 void Dynamics::step()

@@ -11,7 +11,7 @@ namespace
 {
 /// Stiffness of a skeleton with rho V_p^2 = 1 Pa and rho V_s^2 = shear Pa for one cell, divided by its nodal volumes on
 /// both sides (square roots): its eigenvalues are omega^2 at a density of 1 kg/m3.
-Eigen::MatrixXd scaled_stiffness(const CellTables &t, std::size_t cell, double shear)
+Eigen::MatrixXd scaled_stiffness(const CellTables &t, const CellGeometry &at, std::size_t cell, double shear)
 {
   const std::size_t n_nodes = t.n_nodes, n = 3 * n_nodes, dim = t.dimension;
   const double *share = &t.nodal_share[cell * n_nodes];
@@ -24,11 +24,11 @@ Eigen::MatrixXd scaled_stiffness(const CellTables &t, std::size_t cell, double s
           Eigen::Vector3d ga = Eigen::Vector3d::Zero(), gb = ga;
           for (std::size_t d = 0; d < dim; ++d)
             {
-              ga[mesh_axes[dim][d]] = t.gradient[(q * n_nodes + a) * dim + d];
-              gb[mesh_axes[dim][d]] = t.gradient[(q * n_nodes + b) * dim + d];
+              ga[mesh_axes[dim][d]] = at.gradient[(q * n_nodes + a) * dim + d];
+              gb[mesh_axes[dim][d]] = at.gradient[(q * n_nodes + b) * dim + d];
             }
-          k.block<3, 3>(3 * a, 3 * b) += t.weight[q] * (lambda * ga * gb.transpose() + shear * gb * ga.transpose() +
-                                                        shear * ga.dot(gb) * Eigen::Matrix3d::Identity());
+          k.block<3, 3>(3 * a, 3 * b) += at.weight[q] * (lambda * ga * gb.transpose() + shear * gb * ga.transpose() +
+                                                         shear * ga.dot(gb) * Eigen::Matrix3d::Identity());
         }
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
@@ -36,35 +36,35 @@ Eigen::MatrixXd scaled_stiffness(const CellTables &t, std::size_t cell, double s
   return k;
 }
 
-double frequency(const CellTables &t, std::size_t cell)
+double frequency(const CellTables &t, const CellGeometry &at, std::size_t cell)
 {
   double largest = 0;
   for (double shear : {0.0, 0.75})
     {
-      const Eigen::MatrixXd k = scaled_stiffness(t, cell, shear);
+      const Eigen::MatrixXd k = scaled_stiffness(t, at, cell, shear);
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, Eigen::EigenvaluesOnly);
       largest = std::max(largest, solver.eigenvalues().maxCoeff());
     }
   return largest;
 }
 
-bool have_same_shape(const CellTables &t, std::size_t one, std::size_t other)
+bool have_same_shape(const CellTables &t, const CellGeometry &at, std::size_t one, std::size_t other)
 {
   const std::size_t per_cell = t.n_gauss * t.n_nodes * t.dimension;
-  const double *a = &t.gradient[one * per_cell], *b = &t.gradient[other * per_cell];
+  const double *a = &at.gradient[one * per_cell], *b = &at.gradient[other * per_cell];
   return std::equal(a, a + per_cell, b, [&](double x, double y) { return std::abs(x - y) < 1e-9 * std::abs(*a); });
 }
 } // namespace
 
-std::vector<double> cell_frequencies(const CellTables &t)
+std::vector<double> cell_frequencies(const CellTables &t, const CellGeometry &at)
 {
   std::vector<double> found;
   std::vector<std::size_t> known; // the first cell of each shape
   for (std::size_t cell = 0; cell < t.n_cells(); ++cell)
     {
-      const auto same =
-          std::find_if(known.begin(), known.end(), [&](std::size_t other) { return have_same_shape(t, cell, other); });
-      found.push_back(same == known.end() ? frequency(t, cell) : found[*same]);
+      const auto same = std::find_if(known.begin(), known.end(),
+                                     [&](std::size_t other) { return have_same_shape(t, at, cell, other); });
+      found.push_back(same == known.end() ? frequency(t, at, cell) : found[*same]);
       if (same == known.end())
         known.push_back(cell);
     }

@@ -149,9 +149,7 @@ Discretisation<dim>::Discretisation(const MeshSpec &mesh, const Supports &suppor
         drained_pressures.push_back(cell_pressures[k]);
   sort_unique(fixed_dofs);
   sort_unique(drained_pressures);
-  cell_frequency_ = cell_frequencies(*this);
-  for (std::size_t cell = 0; cell < n_cells(); ++cell)
-    cell_frequency_[cell] /= mesh_.soil.layers[cell_layer[cell]].density;
+  cell_frequency_ = frequencies(*this);
 }
 
 template <int dim>

@@ -51,15 +51,33 @@ public:
 
   /// Displacement gradients h_cd = factor sum_A u_Ac dN_A/dx_d at all points, along the axes that are meshed; the other
   /// entries of `out` stay as they are (0).   @pre ghost entries of u are up to date   Cost: in the loop.
-  void gradients(const Vector &u, std::span<Gradient> out, double factor = 1) const;
+  void gradients(const Vector &u, std::span<Gradient> out, double factor = 1) const
+  {
+    gradients(*this, u, out, factor);
+  }
+  /// The same in cells that have moved: deform().
+  void gradients(const CellGeometry &at, const Vector &u, std::span<Gradient> out, double factor = 1) const;
   /// f_Ac += int sigma_cd dN_A/dx_d, the internal force of effective stresses (N); what belongs to other ranks is
   /// brought home.   Cost: in the loop.
-  void add_internal_force(std::span<const Stress> stresses, Vector &f) const;
+  void add_internal_force(std::span<const Stress> stresses, Vector &f) const { add_internal_force(*this, stresses, f); }
+  void add_internal_force(const CellGeometry &at, std::span<const Stress> stresses, Vector &f) const;
+  /// The cells where displacements u have brought them: with F = I + du/dX along the axes that are meshed,
+  /// dN/dx = dN/dX F^-1 and dv = det F dV; exactly those of the start for u = 0.
+  /// @pre ghost entries of u are up to date   @throws RunFailure  a cell is turned inside out   Cost: in the loop.
+  void deform(const Vector &u, CellGeometry &at) const;
   /// Pressure at all points, Pa, 0 above the water table, whatever the ghosts of p hold.
   std::vector<double> point_pressures(const Vector &p) const;
   /// Bound of the largest omega^2 of the mesh, (rad/s)^2: the largest of any cell (Irons & Treharne 1971), for an
   /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held in wet cells.   Cost: in the loop.
-  double max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const;
+  double max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const
+  {
+    return max_frequency_squared(cell_frequency_, moduli, shear_only);
+  }
+  /// The same of cells that have moved, with their frequencies().
+  double max_frequency_squared(std::span<const double> frequencies, std::span<const WaveModuli> moduli,
+                               bool shear_only) const;
+  /// omega^2 of each cell per Pa of wave modulus: cell_frequencies() over the density of its layer.
+  std::vector<double> frequencies(const CellGeometry &at) const;
 
 protected:
   FiniteElementSpace(const MeshSpec &mesh, const Supports &supports, int dim, MPI_Comm communicator);
@@ -69,7 +87,7 @@ protected:
   bool shared_out_;
   MPI_Comm communicator_;
   VectorPartition displacements_, pressures_;
-  std::vector<double> cell_frequency_; ///< omega^2 per Pa of wave modulus
+  std::vector<double> cell_frequency_; ///< frequencies() of the start
 };
 
 template <int dim>

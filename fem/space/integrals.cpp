@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Strains and forces from the tables of the cells, in the time loop.
+#include "base/error.hpp"
 #include "fem/space/discretisation.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -18,8 +21,8 @@ struct Pointers
   const double *gradient, *weight;
   std::size_t n_cells, n_points;
 
-  explicit Pointers(const CellTables &t)
-      : dofs(t.cell_dofs.data()), gradient(t.gradient.data()), weight(t.weight.data()), n_cells(t.n_cells()),
+  Pointers(const CellTables &t, const CellGeometry &at)
+      : dofs(t.cell_dofs.data()), gradient(at.gradient.data()), weight(at.weight.data()), n_cells(t.n_cells()),
         n_points(t.n_gauss)
   {}
 };
@@ -71,6 +74,33 @@ void cell_forces(const Pointers &t, const Stress *stresses, double *f)
     }
 }
 
+/// Brings gradients and volume of a point from the start to where a gradient h of displacement has moved it.
+template <int dim>
+void deform_point(const CellTables &t, std::size_t q, const Gradient &h, CellGeometry &at)
+{
+  using Matrix = Eigen::Matrix<double, dim, dim>;
+  Matrix f = Matrix::Identity(); // of the axes that are meshed: along others nothing changes
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j)
+      f(i, j) += h[3 * mesh_axes[dim][i] + mesh_axes[dim][j]];
+  const double volume = f.determinant();
+  if (!(volume > 0))
+    throw RunFailure(fmt::format("the element around x = {:.4g} m, y = {:.4g} m, z = {:.4g} m is turned inside out "
+                                 "(volume ratio {:.3g}); give larger elements there, or end the run earlier",
+                                 t.position[q][0], t.position[q][1], t.position[q][2], volume));
+  const Matrix inverse = f.inverse();
+  const auto turn = [&](std::vector<double> &gradients, std::size_t n) {
+    for (std::size_t a = q * n; a < (q + 1) * n; ++a)
+      {
+        Eigen::Map<Eigen::Matrix<double, 1, dim>> gradient(&gradients[a * dim]);
+        gradient = (gradient * inverse).eval();
+      }
+  };
+  turn(at.gradient, t.n_nodes);
+  turn(at.pressure_gradient, t.pressure_nodes_per_cell());
+  at.weight[q] *= volume;
+}
+
 /// loop<dim, nodes of a cell>() for cells as they are: degree 1 has two nodes along each axis, degree 2 three.
 template <typename Loop>
 void for_shape_of(const CellTables &t, const Loop &loop)
@@ -85,15 +115,27 @@ void for_shape_of(const CellTables &t, const Loop &loop)
 }
 } // namespace
 
-void FiniteElementSpace::gradients(const Vector &u, std::span<Gradient> out, double factor) const
+void FiniteElementSpace::gradients(const CellGeometry &at, const Vector &u, std::span<Gradient> out,
+                                   double factor) const
 {
   for_shape_of(*this,
-               [&]<int dim, int n>() { cell_gradients<dim, n>(Pointers(*this), u.begin(), factor, out.data()); });
+               [&]<int dim, int n>() { cell_gradients<dim, n>(Pointers(*this, at), u.begin(), factor, out.data()); });
 }
 
-void FiniteElementSpace::add_internal_force(std::span<const Stress> stresses, Vector &f) const
+void FiniteElementSpace::deform(const Vector &u, CellGeometry &at) const
 {
-  for_shape_of(*this, [&]<int dim, int n>() { cell_forces<dim, n>(Pointers(*this), stresses.data(), f.begin()); });
+  std::vector<Gradient> h(n_points());
+  gradients(u, h);
+  at = *this;
+  for_shape_of(*this, [&]<int dim, int n>() {
+    for (std::size_t q = 0; q < n_points(); ++q)
+      deform_point<dim>(*this, q, h[q], at);
+  });
+}
+
+void FiniteElementSpace::add_internal_force(const CellGeometry &at, std::span<const Stress> stresses, Vector &f) const
+{
+  for_shape_of(*this, [&]<int dim, int n>() { cell_forces<dim, n>(Pointers(*this, at), stresses.data(), f.begin()); });
   if (shared_out_)
     f.add_ghosts_to_owners();
 }
@@ -135,7 +177,16 @@ std::vector<double> FiniteElementSpace::point_pressures(const Vector &p) const
   return pressure;
 }
 
-double FiniteElementSpace::max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const
+std::vector<double> FiniteElementSpace::frequencies(const CellGeometry &at) const
+{
+  std::vector<double> found = cell_frequencies(*this, at);
+  for (std::size_t cell = 0; cell < n_cells(); ++cell)
+    found[cell] /= mesh_.soil.layers[cell_layer[cell]].density;
+  return found;
+}
+
+double FiniteElementSpace::max_frequency_squared(std::span<const double> frequencies,
+                                                 std::span<const WaveModuli> moduli, bool shear_only) const
 {
   double maximum = 0;
   for (std::size_t cell = 0; cell < n_cells(); ++cell)
@@ -143,7 +194,7 @@ double FiniteElementSpace::max_frequency_squared(std::span<const WaveModuli> mod
       double modulus = 0;
       for (std::size_t q = cell * n_gauss; q < (cell + 1) * n_gauss; ++q)
         modulus = std::max(modulus, shear_only && cell_is_wet[cell] ? moduli[q].s : moduli[q].p);
-      maximum = std::max(maximum, modulus * cell_frequency_[cell]);
+      maximum = std::max(maximum, modulus * frequencies[cell]);
     }
   if (shared_out_)
     MPI_Allreduce(MPI_IN_PLACE, &maximum, 1, MPI_DOUBLE, MPI_MAX, communicator_);

@@ -10,26 +10,31 @@ template <int dim>
 class Unknowns;
 struct MeshSpec;
 
+/// What of the cells' tables changes when they are deformed.
+struct CellGeometry
+{
+  std::vector<double> gradient;          ///< grad N_A [point][node][dim], 1/m
+  std::vector<double> pressure_gradient; ///< grad N_i [point][corner][dim], 1/m
+  std::vector<double> weight;            ///< volume of a point; axes that are not meshed count 1 m. m3
+};
+
 /// A mesh as flat tables of this rank's cells, all that integrals need. Every cell has the same numbers of nodes,
 /// points and corners. Points are numbered cell by cell, cells from the base up (in 2D and 3D in the order of the
 /// mesh). tested: tests/fem/space/discretisation_test.cpp
-struct CellTables
+struct CellTables : CellGeometry
 {
   unsigned dimension = 0;
-  std::size_t n_nodes = 0, n_gauss = 0;  ///< of a cell
-  std::vector<unsigned> cell_dofs;       ///< [cell][node][3], local displacement unknown, ties resolved
-  std::vector<unsigned> cell_pressures;  ///< [cell][corner], local pressure unknown, ties resolved
-  std::vector<double> shape;             ///< N_A [point of a cell][node], the same in every cell
-  std::vector<double> gradient;          ///< grad N_A [point][node][dim], 1/m
-  std::vector<double> pressure_shape;    ///< N_i [point of a cell][corner]
-  std::vector<double> pressure_gradient; ///< grad N_i [point][corner][dim], 1/m
-  std::vector<double> weight;            ///< volume of a point; axes that are not meshed count 1 m. m3
-  std::vector<double> nodal_share;       ///< [cell][node] Gauss-Lobatto volume of a node, m3
-  std::vector<Place> position;           ///< of a point
-  std::vector<Place> corner;             ///< [cell][corner], x fastest
-  std::vector<std::size_t> point_id;     ///< number of a point in the whole mesh, for any partition
-  std::vector<unsigned> cell_layer;      ///< number of a cell's layer in MeshSpec::soil, from the surface down
-  std::vector<bool> cell_is_wet;         ///< below the water table
+  std::size_t n_nodes = 0, n_gauss = 0; ///< of a cell
+  std::vector<unsigned> cell_dofs;      ///< [cell][node][3], local displacement unknown, ties resolved
+  std::vector<unsigned> cell_pressures; ///< [cell][corner], local pressure unknown, ties resolved
+  std::vector<double> shape;            ///< N_A [point of a cell][node], the same in every cell
+  std::vector<double> pressure_shape;   ///< N_i [point of a cell][corner]
+  std::vector<double> nodal_share;      ///< [cell][node] Gauss-Lobatto volume of a node, m3
+  std::vector<Place> position;          ///< of a point
+  std::vector<Place> corner;            ///< [cell][corner], x fastest
+  std::vector<std::size_t> point_id;    ///< number of a point in the whole mesh, for any partition
+  std::vector<unsigned> cell_layer;     ///< number of a cell's layer in MeshSpec::soil, from the surface down
+  std::vector<bool> cell_is_wet;        ///< below the water table
 
   std::size_t n_cells() const { return cell_layer.size(); }
   std::size_t n_points() const { return weight.size(); }
@@ -42,7 +47,8 @@ struct CellTables
 /// values at the ends 0 and 3/4 (no bulk modulus) bounds it. omega of the mesh is at most that of its worst cell (Irons
 /// & Treharne 1971): docs/theory_column.md (10). cost: one eigenvalue problem for each shape of cell     tested:
 /// tests/fem/solve/dynamics_test.cpp
-std::vector<double> cell_frequencies(const CellTables &tables);
+/// @param at  gradients and volumes; nodal volumes stay those of the tables, as masses do
+std::vector<double> cell_frequencies(const CellTables &tables, const CellGeometry &at);
 
 /// Gauss points for volumes (MeshSpec::gauss_points along each axis), Gauss-Lobatto at the nodes for nodal_share.
 template <int dim>

@@ -26,10 +26,10 @@ double largest(const Vector &v, const FiniteElementSpace &space)
 }
 } // namespace
 
-AirPressure::AirPressure(const FiniteElementSpace &space, double time_step, PetscMatrix linear,
-                         const std::vector<unsigned> &held)
-    : space_(space), two_steps_(2 * time_step), fluids_(pore_fluids(space)), linear_(std::move(linear)),
-      held_(space.pressure_vector()), residual_(held_), change_(held_),
+AirPressure::AirPressure(const FiniteElementSpace &space, std::vector<double> volumes, double time_step,
+                         PetscMatrix linear, const std::vector<unsigned> &held)
+    : space_(space), volumes_(std::move(volumes)), two_steps_(2 * time_step), fluids_(pore_fluids(space)),
+      linear_(std::move(linear)), held_(space.pressure_vector()), residual_(held_), change_(held_),
       of_p_(space.communicator(), held_.locally_owned_size()),
       of_residual_(space.communicator(), held_.locally_owned_size())
 {
@@ -53,7 +53,7 @@ void AirPressure::find_residual(const Vector &b, const Vector &p)
   const std::size_t n_i = space_.pressure_nodes_per_cell(), n_q = space_.points_per_cell();
   for (std::size_t q = 0; q < pressure.size(); ++q)
     {
-      const double rate = space_.weight[q] * (3 * fluids_[q].volume(pressure[q]) - before_[q]) / two_steps_;
+      const double rate = volumes_[q] * (3 * fluids_[q].volume(pressure[q]) - before_[q]) / two_steps_;
       for (std::size_t i = 0; i < n_i; ++i)
         residual_.local_element(space_.cell_pressures[q / n_q * n_i + i]) +=
             space_.pressure_shape[q % n_q * n_i + i] * rate;
@@ -78,7 +78,7 @@ void AirPressure::find_tangent(const Vector &p)
           {
             double sum = 0;
             for (std::size_t q = 0; q < n_q; ++q)
-              sum += space_.weight[cell * n_q + q] * fluids_[cell * n_q + q].storage(pressure[cell * n_q + q]) *
+              sum += volumes_[cell * n_q + q] * fluids_[cell * n_q + q].storage(pressure[cell * n_q + q]) *
                      space_.pressure_shape[q * n_i + i] * space_.pressure_shape[q * n_i + j];
             petsc_check(MatSetValue(tangent_.get(), p.global_index(unknowns[i]), p.global_index(unknowns[j]),
                                     3 * sum / two_steps_, ADD_VALUES));

@@ -20,7 +20,9 @@ class AirPressure
 public:
   /// @param linear  H + (G/2 + L/dt) D G^T with room for S; rows of held pressures are those of the identity
   /// @param held    owned unknowns with p = 0
-  AirPressure(const FiniteElementSpace &space, double time_step, PetscMatrix linear, const std::vector<unsigned> &held);
+  /// @param volumes  of the points, m3
+  AirPressure(const FiniteElementSpace &space, std::vector<double> volumes, double time_step, PetscMatrix linear,
+              const std::vector<unsigned> &held);
 
   /// p of linear p + int N_i (...)/(2 dt) = b.   @throws RunFailure  no solution in 50 iterations
   void solve(const Vector &b, const Vector &before, const Vector &before_that, Vector &p);
@@ -30,6 +32,7 @@ private:
   void find_tangent(const Vector &p);
 
   const FiniteElementSpace &space_;
+  std::vector<double> volumes_;
   double two_steps_;
   std::vector<PoreFluid> fluids_; ///< of each point
   PetscMatrix linear_, tangent_, factor_;

@@ -88,8 +88,8 @@ std::vector<double> point_storage(const FiniteElementSpace &space)
   return storage;
 }
 
-BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::span<const double> storage,
-                   std::size_t cell)
+BiotCell biot_cell(const FiniteElementSpace &space, const CellGeometry &at, const PorousLayer &layer,
+                   std::span<const double> storage, std::size_t cell)
 {
   const std::size_t n_a = space.n_nodes, n_i = space.pressure_nodes_per_cell(), n_q = space.n_gauss,
                     dim = space.dimension;
@@ -101,19 +101,19 @@ BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, st
     for (std::size_t q = 0; q < n_q; ++q)
       {
         const std::size_t point = cell * n_q + q;
-        const double w = space.weight[point], value = space.pressure_shape[q * n_i + i];
-        const double *slope = &space.pressure_gradient[(point * n_i + i) * dim];
+        const double w = at.weight[point], value = space.pressure_shape[q * n_i + i];
+        const double *slope = &at.pressure_gradient[(point * n_i + i) * dim];
         for (std::size_t j = 0; j < n_i; ++j)
           {
             c.s(i, j) += w * storage[point] * value * space.pressure_shape[q * n_i + j];
             for (std::size_t d = 0; d < dim; ++d)
-              c.h(i, j) += w * layer.mobility * slope[d] * space.pressure_gradient[(point * n_i + j) * dim + d];
+              c.h(i, j) += w * layer.mobility * slope[d] * at.pressure_gradient[(point * n_i + j) * dim + d];
           }
         for (std::size_t a = 0; a < n_a; ++a)
           for (std::size_t d = 0; d < dim; ++d)
             {
               const std::size_t column = 3 * a + mesh_axes[dim][d];
-              c.g(i, column) += w * value * space.gradient[(point * n_a + a) * dim + d];
+              c.g(i, column) += w * value * at.gradient[(point * n_a + a) * dim + d];
               c.l(i, column) += w * layer.mobility * layer.fluid_density * slope[d] * space.shape[q * n_a + a];
             }
       }
@@ -125,7 +125,7 @@ BiotOperator::BiotOperator(const FiniteElementSpace &space) : space_(space)
   const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
   const std::vector<double> storage = point_storage(space);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
-    cells_.push_back(biot_cell(space, layers[space.cell_layer[cell]], storage, cell));
+    cells_.push_back(biot_cell(space, space, layers[space.cell_layer[cell]], storage, cell));
 }
 
 void BiotOperator::add_pore_force(const Vector &p, Vector &f) const

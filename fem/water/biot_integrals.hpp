@@ -35,8 +35,9 @@ struct BiotCell
 /// @param layer  coefficients of the cell's layer   @param storage  1/Q of every point of the mesh
 /// @return zeros above the water table
 /// tested: tests/fem/water/biot_integrals_test.cpp, tests/verification/consolidation_test.cpp
-BiotCell biot_cell(const FiniteElementSpace &space, const PorousLayer &layer, std::span<const double> storage,
-                   std::size_t cell);
+/// @param at  the cells: the space, or where they have moved
+BiotCell biot_cell(const FiniteElementSpace &space, const CellGeometry &at, const PorousLayer &layer,
+                   std::span<const double> storage, std::size_t cell);
 
 /// The integrals of all cells, and their products with vectors. Displacements and pressures of other ranks are fetched
 /// and results brought home.   tested: tests/verification/consolidation_test.cpp, tests/verification/mandel_test.cpp

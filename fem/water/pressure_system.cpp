@@ -33,7 +33,7 @@ struct BiotEntries
   std::size_t n_pressures = 0, n_displacements = 0; ///< owned by this rank
   MPI_Comm communicator = MPI_COMM_SELF;
 
-  BiotEntries(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers);
+  BiotEntries(const FiniteElementSpace &space, const CellGeometry &at, const std::vector<PorousLayer> &layers);
 
   PetscMatrix coupling(double a, double b) const; ///< a G + b L
   PetscMatrix to_force() const;                   ///< G^T
@@ -41,7 +41,8 @@ struct BiotEntries
   PetscMatrix seepage() const;                    ///< H
 };
 
-BiotEntries::BiotEntries(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers)
+BiotEntries::BiotEntries(const FiniteElementSpace &space, const CellGeometry &at,
+                         const std::vector<PorousLayer> &layers)
     : communicator(space.communicator())
 {
   const Vector u = space.displacement_vector(), p = space.pressure_vector();
@@ -51,7 +52,7 @@ BiotEntries::BiotEntries(const FiniteElementSpace &space, const std::vector<Poro
   const std::vector<double> storage_of_points = point_storage(space);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
-      const BiotCell c = biot_cell(space, layers[space.cell_layer[cell]], storage_of_points, cell);
+      const BiotCell c = biot_cell(space, at, layers[space.cell_layer[cell]], storage_of_points, cell);
       for (std::size_t i = 0; i < n_i; ++i)
         {
           const PetscInt row = p.global_index(space.cell_pressures[cell * n_i + i]);
@@ -103,7 +104,8 @@ PetscMatrix BiotEntries::seepage() const
   return petsc_matrix(communicator, n_pressures, n_pressures, entries);
 }
 
-std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const std::vector<PorousLayer> &layers)
+std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const CellGeometry &at,
+                                 const std::vector<PorousLayer> &layers)
 {
   const std::size_t n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
   std::array<Vector, 3> flows;
@@ -117,8 +119,8 @@ std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const std::vec
       for (std::size_t i = 0; i < n_i; ++i)
         for (unsigned d = 0; d < space.dimension; ++d)
           flows[mesh_axes[space.dimension][d]].local_element(space.cell_pressures[point / n_q * n_i + i]) +=
-              space.weight[point] * layer.mobility * layer.fluid_density *
-              space.pressure_gradient[(point * n_i + i) * space.dimension + d];
+              at.weight[point] * layer.mobility * layer.fluid_density *
+              at.pressure_gradient[(point * n_i + i) * space.dimension + d];
     }
   for (Vector &flow : flows)
     flow.add_ghosts_to_owners();
@@ -146,11 +148,12 @@ PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, double fact
 }
 } // namespace
 
-PressureSystem::PressureSystem(const FiniteElementSpace &space, double time_step, const Vector &update)
+PressureSystem::PressureSystem(const FiniteElementSpace &space, const CellGeometry &at, double time_step,
+                               const Vector &update)
 {
   const MPI_Comm communicator = space.communicator();
   const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
-  const BiotEntries entries(space, layers);
+  const BiotEntries entries(space, at, layers);
   const std::size_t n_p = entries.n_pressures;
   const Vector zero = space.pressure_vector();
   matrices_.reset(new Matrices{.storage = entries.storage(2 * time_step),
@@ -159,7 +162,7 @@ PressureSystem::PressureSystem(const FiniteElementSpace &space, double time_step
                                .behind = entries.coupling(0.5, -1 / time_step),
                                .factor = {},
                                .air = {},
-                               .base_flow = base_flows(space, layers),
+                               .base_flow = base_flows(space, at, layers),
                                .held = held_pressures(space, n_p),
                                .right_hand_side = zero,
                                .work = zero,
@@ -175,7 +178,7 @@ PressureSystem::PressureSystem(const FiniteElementSpace &space, double time_step
       pressure_matrix(entries, m.storage.get(), boyle ? 0 : 3, m.to_force.get(), time_step, m.of_u.of(update), held);
   m.of_u.release();
   if (boyle)
-    m.air = std::make_unique<AirPressure>(space, time_step, std::move(matrix), m.held);
+    m.air = std::make_unique<AirPressure>(space, at.weight, time_step, std::move(matrix), m.held);
   else
     m.factor = factorised(matrix.get(), communicator, space.dimension == 1);
 }

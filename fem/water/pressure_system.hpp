@@ -24,7 +24,8 @@ class PressureSystem
 {
 public:
   /// @param update  D: v+ per unit force, for each displacement unknown (0 where it is fixed)
-  PressureSystem(const FiniteElementSpace &space, double time_step, const Vector &update);
+  /// @param at      the cells, those of the space unless they have moved
+  PressureSystem(const FiniteElementSpace &space, const CellGeometry &at, double time_step, const Vector &update);
   ~PressureSystem();
 
   /// p from v* and what came before.  @param base_acceleration  constant over the mesh, m/s2

@@ -47,7 +47,7 @@ void integrals_are_exact(unsigned degree)
   const std::vector<double> everywhere(space.n_points(), storage);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
-      const BiotCell c = biot_cell(space, {mobility, density}, everywhere, cell);
+      const BiotCell c = biot_cell(space, space, {mobility, density}, everywhere, cell);
       const Eigen::VectorXd one = Eigen::VectorXd::Ones(space.pressure_nodes_per_cell());
       std::vector<Coordinate> axes;
       double volume = 1;
@@ -88,8 +88,8 @@ TEST(BiotIntegrals, NoWaterMovesAboveTheWaterTable)
   mesh.soil.water_table = 3;
   const Discretisation<1> space(mesh, {});
   const std::vector<double> everywhere(space.n_points(), storage);
-  const BiotCell wet = biot_cell(space, {mobility, density}, everywhere, 0),
-                 dry = biot_cell(space, {mobility, density}, everywhere, 1);
+  const BiotCell wet = biot_cell(space, space, {mobility, density}, everywhere, 0),
+                 dry = biot_cell(space, space, {mobility, density}, everywhere, 1);
   EXPECT_GT(wet.g.norm() * wet.l.norm() * wet.s.norm() * wet.h.norm(), 0);
   EXPECT_EQ(dry.g.norm() + dry.l.norm() + dry.s.norm() + dry.h.norm(), 0);
 }
