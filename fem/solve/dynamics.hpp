@@ -57,7 +57,7 @@ struct DynamicsEnergy
 ///
 /// With large_strain sigma' is Cauchy's stress in the cells as they are: F, G, H, L and S are integrals over the
 /// deformed cells (FiniteElementSpace::deform()), the increments of displacement gradient that the material gets refer
-/// to the cells at the start of the step. M stays, as mass does. Those of the water and the stable step are found anew
+/// to the cells at the start of the step. M stays, as mass does. Those of the water and the stable step are found again
 /// when a displacement gradient since the last time exceeds 0.2 %. It is the material that turns its stress with the
 /// soil: packings do, formulas do not. tested: tests/fem/solve/large_strain_test.cpp
 ///
