@@ -190,7 +190,7 @@ TEST(LargeStrain, ColumnAtRestStaysAtRestToTheBit)
 TEST(LargeStrain, CompressionUnderALoadIsLogarithmic)
 {
   // sigma = M ln(stretch) where the increments of strain refer to the present height; small strain has q/M
-  constexpr test::Tolerance near{1e-3, "what is left of the motion after 15 s, and strain in increments"};
+  constexpr test::Tolerance near{1e-3, "what remains of the motion after 15 s, and strain in increments"};
   EXPECT_NEAR_BECAUSE(Loaded(true, Drainage::dry, 10).settlement_after(15), height * (1 - std::exp(-load / modulus)),
                       near);
   EXPECT_NEAR_BECAUSE(Loaded(false, Drainage::dry, 10).settlement_after(15), height * load / modulus, near);
