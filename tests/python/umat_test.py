@@ -99,26 +99,42 @@ class PackingAsUmat(FolderTest):
             for part in ("isostat_umat: material ", *parts):
                 self.assertIn(part, result.stderr)
 
-    def scene(self, **analysis):
+    def scene(self):
         return column.ColumnScene({
             "title": "a packing behind the door of UMAT", "mesh": {"degree": 1}, "water": {"drainage": "dry"},
             "layer": [{"name": "sand", "thickness": "4 m", "cells": 2, "k0": 0.6, "material": "umat",
                        "umat": {"library": str(LIBRARY), "props": [0, 1e-3], "nstatv": NSTATV}}],
-            "motion": [{"kind": "ricker", "amplitude": "1 m/s2", "frequency": "20 Hz"}],
-            "load": {"surcharge": "100 kPa"}, "output": {"depths": ["1 m"]},
-            "analysis": {"duration": "0.02 s", **analysis}})
+            "motion": [{"kind": "ricker", "amplitude": "3 m/s2", "frequency": "40 Hz"}],
+            "load": {"surcharge": "100 kPa"}, "output": {"depths": ["1 m"], "history_interval": "1e-6 s"},
+            "analysis": {"duration": "0.06 s"}})
+
+    def brought_to(self, stress):
+        rve = isostat.Rve(self.packing, inertial_number=1e-3)
+        rve.mixed(np.zeros((3, 3)), stress, np.ones((3, 3), bool), tolerance=1e-3)
+        return rve
 
     def test_a_point_of_a_layer_is_the_packing_to_the_bit(self):
         point = column.SoilPoint(self.scene(), "sand")
-        begun = point.stress
-        rve = isostat.Rve(self.packing, inertial_number=1e-3)
-        rve.mixed(np.zeros((3, 3)), np.array([[begun[0], 0, 0], [0, begun[1], 0], [0, 0, begun[2]]]),
-                  np.ones((3, 3), bool), tolerance=1e-3)
+        rve = self.brought_to(np.diag(point.stress[:3]))
         for dstran in np.random.default_rng(7).uniform(-2e-5, 2e-5, (4, 6)):
             strained = gradient(dstran)
             np.testing.assert_array_equal(point.deform(strained), six(rve.advance(strained).stress))
 
-    def test_a_column(self):
+    def test_a_column_is_what_its_packings_are(self):
+        """The strain of one point, replayed with the packing alone."""
         results = column.run(self.scene(), self.folder / "column", quiet=True)
         self.assertEqual(results.summary["layers"][0]["material"], "umat")
-        self.assertGreater(np.abs(results.history["surface_ax"]).max(), 0)
+        rows = {name: results.history[f"d0_{name}"]
+                for name in ("gamma_xz", "gamma_yz", "eps_zz", "tau_xz", "tau_yz", "sigma_v")}
+        vertical = 100e3 + 2000 * 9.81 * results.history["d0_depth"][0]
+        rve = self.brought_to(-np.diag([0.6, 0.6, 1]) * vertical)
+        strains = np.column_stack([rows["eps_zz"], rows["gamma_xz"], rows["gamma_yz"]])
+        stresses = [six(rve.stress)]
+        for vertical_strain, *gamma in np.diff(strains, axis=0):
+            if vertical_strain or any(gamma):  # not a first step of none
+                rve.advance(gradient([0, 0, -vertical_strain, 0, *gamma]))
+            stresses.append(six(rve.stress))
+        expected = np.array(stresses)
+        self.assertGreater(np.ptp(rows["tau_xz"]), 5e3)
+        for name, values in (("tau_xz", expected[:, 4]), ("tau_yz", expected[:, 3]), ("sigma_v", -expected[:, 2])):
+            self.assert_near(rows[name], values, 1e-3, "strains are differences of rows: round-off, of 1e5 Pa")
