@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Isostat as a user has it who installed it: the programs find what they need next to themselves, and the examples are
 built from outside by find_package(isostat) and show what their first lines say."""
+import ctypes
 import pathlib
 import shutil
 import subprocess
@@ -98,6 +99,14 @@ class Installed(support.ToleranceTest):
                 continue
             with self.assertRaisesRegex(AssertionError, "returned 1\n(?s:.*)isostat_rve_create: .*nowhere.h5"):
                 run(self.build / program, "nowhere.h5", cwd=self.work)
+
+    def test_laws_are_libraries(self):
+        """What they compute: tests/fem/material/umat_test.cpp, tests/python/umat_test.py."""
+        laws = [self.build / "elastic.so", *self.build.glob("drucker_prager.so")]
+        if (support.BIN.parent / "python").is_dir():
+            laws.append(self.prefix / "lib/libisostat_umat.so")
+        for law in laws:
+            self.assertTrue(ctypes.CDLL(str(law)).umat_)
 
     def test_element_test_in_code(self):
         axial, p, q, e = self.rows("element_test_in_code").T

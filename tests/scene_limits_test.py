@@ -8,7 +8,7 @@ from support import ROOT
 SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.cpp", "apps/deposit/plate.cpp",
            "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp",
            "apps/deposit/biaxial.cpp", "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp",
-           "fem/material/mohr_coulomb_scene.cpp", "fem/solve/newton_scene.cpp")
+           "fem/material/mohr_coulomb_scene.cpp", "fem/material/umat_scene.cpp", "fem/solve/newton_scene.cpp")
 # The key of a refusal: "mesh.degree", prefix + ".density", fmt::format("stage.{}.friction", i), key("lot"), and the
 # {"cohesion", "must be ..."} of mohr_coulomb_problem().
 REFUSED = re.compile(r'(?:refuse\(\s*|key\()(?:\w+ \+ |fmt::format\(\s*)?"([\w.{}]+)"|return \{"(\w+)",\s*"')
@@ -30,7 +30,7 @@ STATED = {
         "water.table": "Less than the height of the soil", "slope.angle": "Less than the soil can bear",
         "layer.saturation": "Below 1 only below the water table", "layer.density": "Above that of the water",
         "layer.permeability": "Must be given if the drainage is coupled", "layer.cell_size": "At most 1000000 elements",
-        "layer.material": "", "layer.table": "",
+        "layer.material": "", "layer.umat.nstatv": "at least that in `umat.statev`", "layer.table": "",
         "water.base": 'drained only where drainage is "coupled"',
         "layer.phase_transformation_ratio": "at most `strength_ratio`",
         "layer.cohesion": "Above 0 kPa without friction",

@@ -46,7 +46,7 @@ constexpr Key of_block[] = {
   {.path = "weak.row", .field = member<&Biaxial::weak, &WeakZone::row>, .value = "0", .text = "Its lowest element along z, counted from 0."},
   {.path = "weak.factor", .field = member<&Biaxial::weak, &WeakZone::factor>, .value = "0.8", .range = positive,
    .text = "Of stiffness, and of the strength of iwan and mohr_coulomb (tan(phi), cohesion, tan(psi)); ignored by "
-           "grains and by a user material."},
+           "grains, umat and user."},
   {.path = "weak.relative_density", .field = member<&Biaxial::weak, &WeakZone::grains, &SpecimenRequest::relative_density>, .presence = Presence::optional, .value = "0.4", .range = {-1, 2},
    .reason = "because D_r is 0 at e_max and 1 at e_min, and no packing is as far beyond",
    .text = "D_r of its packings; left out: that of the soil."},

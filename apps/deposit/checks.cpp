@@ -150,6 +150,8 @@ void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t 
     check_k0(document, prefix, layer.sand(), layer.k0);
   if (layer.material == LayerMaterial::mohr_coulomb)
     check_mohr_coulomb(document, prefix, layer.mohr_coulomb);
+  if (layer.material == LayerMaterial::umat)
+    check_umat(document, prefix, layer.umat);
   constexpr unsigned most = 1000000;
   if (layer.cells == 0 && layer.cell_size == 0 && !may_choose_cells(scene, layer))
     document.refuse(prefix, "must have exactly one of cells, cell_size. Give for example cells = 10. Only layers of "

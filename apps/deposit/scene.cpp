@@ -4,6 +4,7 @@
 #include "apps/deposit/default_mesh.hpp"
 #include "apps/deposit/layer_tables.hpp"
 #include "apps/deposit/resistance.hpp"
+#include "base/error.hpp"
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
 #include "fem/material/iwan_scene.hpp"
@@ -41,6 +42,25 @@ void find_libraries(const SceneDocument &document, const std::string &path, Colu
   for (std::size_t k = 0; k < scene.layers.size(); ++k)
     if (std::string &library = scene.layers[k].grains.library; !library.empty())
       library = found_file(document, fmt::format("layer.{}.library", k), path, library);
+}
+
+/// Laws that are libraries; a wrong one is met here, where its place in the scene is known.
+void find_umats(const SceneDocument &document, const std::string &path, ColumnScene &scene)
+{
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    if (ColumnLayer &layer = scene.layers[k]; layer.material == LayerMaterial::umat)
+      {
+        const std::string key = fmt::format("layer.{}.umat.library", k);
+        layer.umat.library = found_file(document, key, path, layer.umat.library);
+        try
+          {
+            load_umat(layer.umat.library);
+          }
+        catch (const InputError &error)
+          {
+            document.refuse(key, error.what());
+          }
+      }
 }
 
 /// The cells that layers leave out. @param files_found  records can be read; else waves have the highest frequency
@@ -260,6 +280,7 @@ ColumnScene read_column_scene(const std::string &path, const std::vector<std::st
   ColumnScene scene = checked_scene(document);
   find_motion_files(document, path, scene);
   find_libraries(document, path, scene);
+  find_umats(document, path, scene);
   find_curves(document, path, scene);
   choose_mesh(document, scene, true);
   if (scene.output.folder.empty())

@@ -10,6 +10,7 @@
 #include "fem/material/liquefaction_resistance.hpp"
 #include "fem/material/mohr_coulomb.hpp"
 #include "fem/material/soil.hpp"
+#include "fem/material/umat.hpp"
 #include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
 #include "fem/space/block.hpp"
@@ -64,11 +65,12 @@ enum class LayerMaterial
   iwan,
   mohr_coulomb,
   grains, ///< a packing at every Gauss point (coupling/batch/rve_material.hpp)
+  umat,   ///< a shared library (fem/material/umat.hpp)
   user    ///< given to the run by C++ or Python (apps/deposit/soil_material.hpp)
 };
 
 /// Their words in scenes and summaries, and those of Drainage.
-inline constexpr const char *material_names[] = {"elastic", "iwan", "mohr_coulomb", "grains", "user"};
+inline constexpr const char *material_names[] = {"elastic", "iwan", "mohr_coulomb", "grains", "umat", "user"};
 inline constexpr const char *drainage_names[] = {"dry", "undrained", "coupled"};
 
 /// A layer with its material.
@@ -88,6 +90,7 @@ struct ColumnLayer : Layer
   SandDensity sand_density;             ///< likewise; resisting_layer() gives its sand
   MohrCoulombParameters mohr_coulomb;   ///< likewise, see frictional_soil()
   SpecimenRequest grains;               ///< ignored by other materials
+  UmatParameters umat;                  ///< likewise
   std::string table;                    ///< only in files: when a scene has been read, its rows have become layers
 
   bool from_formula() const { return shear_modulus || shear_velocity; }

@@ -161,7 +161,7 @@ constexpr Key layer_keys[] = {
    .choices = material_names,
    .text = "Law of the soil skeleton: linear elastic; parallel slip elements (Iwan) whose stiffness and strength "
            "follow the mean effective stress; friction and cohesion (Mohr-Coulomb); a packing of grains at every "
-           "Gauss point, see [grains]; or the user's law, which isostat.column.run() in Python takes by the name of "
+           "Gauss point, see [grains]; a shared library with the interface of Abaqus (umat); or the user's law, which isostat.column.run() in Python takes by the name of "
            "the layer (docs/python.md), not with mesh.distributed."},
   {.path = "shear_velocity", .field = member<&ColumnLayer::shear_velocity>, .unit = unit::m_s,
    .presence = Presence::experiment, .value = "200 m/s", .range = {1, 6000},
@@ -369,6 +369,7 @@ const SceneSchema &column_schema()
                              splice<&ColumnLayer::mohr_coulomb>("layer", mohr_coulomb_keys(), mohr_coulomb),
                              splice<&ColumnLayer::grains>("layer", specimen_keys(), grains),
                              KeyRun(own_sand_key, "layer"),
+                             splice<&ColumnLayer::umat>("layer", umat_keys(), kind_bit(LayerMaterial::umat)),
                              splice<&ColumnLayer::grains>("layer", lot_keys(), grains),
                              splice<&ColumnScene::base>("base", base_keys),
                              KeyRun(ground_motion_keys().keys, "motion"),

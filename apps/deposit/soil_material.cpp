@@ -15,28 +15,6 @@ namespace isostat
 {
 namespace
 {
-/// A layer without grains at some points with their stress.
-std::unique_ptr<Material> stressed_layer(const ColumnLayer &soil, std::size_t layer,
-                                         const std::vector<std::size_t> &points, const std::vector<Stress> &in_situ,
-                                         const UserMaterials &user)
-{
-  try
-    {
-      auto material = layer_material(soil, points.size(), user);
-      std::vector<Stress> stresses;
-      for (std::size_t q : points)
-        stresses.push_back(in_situ[q]);
-      material->set_initial_stress(stresses);
-      return material;
-    }
-  catch (const InputError &error)
-    {
-      throw InputError(fmt::format("layer.{} ({}): {}. Points count from the lower end of the layer; correct the "
-                                   "layer's k0 or its material.",
-                                   layer, soil.name, error.what()));
-    }
-}
-
 /// See SoilMaterial::seeds.
 std::vector<std::vector<std::size_t>> drawn_seeds(const ColumnScene &scene,
                                                   const std::vector<SpecimenRequest> &requests)
@@ -63,6 +41,39 @@ std::string point_name(const ColumnScene &scene, const CellTables &mesh, std::si
   for (unsigned axis = 0; axis + 1 < scene.mesh.dimension; ++axis)
     text += fmt::format(", {} {:.4g} m", "xy"[axis], mesh.position[q][axis]);
   return text;
+}
+
+/// The law of a library at some points.
+std::unique_ptr<Material> placed_umat(const ColumnScene &scene, const CellTables &mesh, const ColumnLayer &soil,
+                                      const std::vector<std::size_t> &points)
+{
+  std::vector<UmatPoint> places;
+  for (std::size_t q : points)
+    places.push_back({static_cast<int>(q) + 1, mesh.position[q], point_name(scene, mesh, q)});
+  return std::make_unique<Umat>(soil.umat, soil.name, std::move(places));
+}
+
+/// A layer without grains at some points with their stress.
+std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, const CellTables &mesh, const ColumnLayer &soil,
+                                         std::size_t layer, const std::vector<std::size_t> &points,
+                                         const std::vector<Stress> &in_situ, const UserMaterials &user)
+{
+  try
+    {
+      auto material = soil.material == LayerMaterial::umat ? placed_umat(scene, mesh, soil, points)
+                                                           : layer_material(soil, points.size(), user);
+      std::vector<Stress> stresses;
+      for (std::size_t q : points)
+        stresses.push_back(in_situ[q]);
+      material->set_initial_stress(stresses);
+      return material;
+    }
+  catch (const InputError &error)
+    {
+      throw InputError(fmt::format("layer.{} ({}): {}. Points count from the lower end of the layer; correct the "
+                                   "layer's k0 or its material.",
+                                   layer, soil.name, error.what()));
+    }
 }
 
 /// The packings of a soil.   @throws InputError  of a slope that they cannot bear: layer, depth, and remedies
@@ -119,7 +130,7 @@ void check_user_materials(const ColumnScene &scene, const UserMaterials &given)
       if (!given.contains(layer.name))
         throw InputError(fmt::format("layer.{} (\"{}\"): its material is \"user\", but none was given for this name. "
                                      "Run it from Python with isostat.column.run(scene, materials={{\"{}\": ...}}), or "
-                                     "give the layer another material: elastic, iwan, mohr_coulomb, grains.",
+                                     "give the layer another material: elastic, iwan, mohr_coulomb, grains, umat.",
                                      i, layer.name, layer.name));
     }
   for (const auto &[name, make] : given)
@@ -185,6 +196,8 @@ SpecimenRequest drawn(SpecimenRequest request, const Place &place)
 
 std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user)
 {
+  if (layer.material == LayerMaterial::umat)
+    return std::make_unique<Umat>(layer.umat, layer.name, std::vector<UmatPoint>(n_points));
   return layer.material == LayerMaterial::user ? user.at(layer.name)(n_points) : formula_material(layer, n_points);
 }
 
@@ -223,7 +236,8 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
         // a part without points has a header all the same: states of all ranks fit together
         if (!points[layer].empty() || soils[layer].material != LayerMaterial::user)
           parts.push_back(
-              {stressed_layer(soils[layer], layer % scene.layers.size(), points[layer], in_situ, user), points[layer]});
+              {stressed_layer(scene, mesh, soils[layer], layer % scene.layers.size(), points[layer], in_situ, user),
+               points[layer]});
       }
     else
       for (std::size_t q : points[layer])

@@ -62,7 +62,7 @@ SoilMaterial soil_material(const ColumnScene &scene, const CellTables &mesh, int
 /// mesh, nor on ranks.   @param place  m
 SpecimenRequest drawn(SpecimenRequest request, const Place &place);
 
-/// The material of one layer that is not of grains, without stress.
+/// The material of one layer that is not of grains, without stress; of umat at points that have no place.
 /// @throws std::out_of_range  a user's material that is missing
 std::unique_ptr<Material> layer_material(const ColumnLayer &layer, std::size_t n_points, const UserMaterials &user);
 /// Effective stress in situ at every point, tension positive, Pa: vertically the weight and the surcharge, horizontally

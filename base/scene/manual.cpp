@@ -21,6 +21,8 @@ std::string kind_text(const Key &key)
 {
   constexpr const char *texts[] = {"{}",   "number", "integer",   "true or false",      "word",
                                    "text", "table",  "[{}, ...]", "[percent, percent]", "rows of [length, percent]"};
+  if (key.kind() == Kind::quantity_list && !*key.unit.name)
+    return "[number, ...]";
   static_assert(std::size(texts) == static_cast<std::size_t>(Kind::size_curve) + 1);
   return fmt::format(fmt::runtime(texts[static_cast<std::size_t>(key.kind())]), bare_name(key.unit.dimension));
 }

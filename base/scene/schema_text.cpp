@@ -14,8 +14,7 @@ namespace
 {
 std::string bound_text(const Key &key, double bound)
 {
-  const bool has_unit = key.kind() == Kind::quantity || key.kind() == Kind::quantity_list;
-  return has_unit ? format_bound(bound, key.unit.dimension, key.unit.name) : number_text(bound);
+  return *key.unit.name ? format_bound(bound, key.unit.dimension, key.unit.name) : number_text(bound);
 }
 
 std::string enumerate(const std::vector<std::string> &words)

@@ -44,12 +44,15 @@ struct Reading
   void operator()(std::vector<double> *values) const
   {
     const auto *array = node.as_array();
+    const bool plain = !*key.unit.name;
+    if (!array && plain)
+      refuse("must be a list [...] of plain numbers");
     if (!array)
       refuse(fmt::format("must be a list [...] whose entries are {} with its unit ({}), in quotes",
                          dimension_name(key.unit.dimension), unit_names(key.unit.dimension)));
     values->clear();
     for (const toml::node &element : *array)
-      values->push_back(quantity(element));
+      values->push_back(plain ? number(element) : quantity(element));
   }
 
   void operator()(const PercentPair &pair) const
@@ -88,8 +91,7 @@ struct Reading
     if (scale != 0 && !(std::abs(scale) >= smallest && std::abs(scale) <= largest))
       refuse(fmt::format("must be between {:g} and {:g} in size{}, because products of larger or smaller numbers "
                          "overflow or vanish",
-                         smallest, largest,
-                         key.kind() == Kind::quantity || key.kind() == Kind::quantity_list ? " (in SI units)" : ""));
+                         smallest, largest, *key.unit.name ? " (in SI units)" : ""));
     if (key.range.contains(scale))
       return;
     const std::string range = range_text(key);

@@ -57,7 +57,8 @@ struct WriteValue
     std::string text;
     for (const double value : *values)
       text +=
-          fmt::format("{}\"{}\"", text.empty() ? "" : ", ", format_quantity(value, key.unit.dimension, key.unit.name));
+          (text.empty() ? "" : ", ") +
+          (!*key.unit.name ? real_text(value) : toml_text(format_quantity(value, key.unit.dimension, key.unit.name)));
     return values->empty() && key.presence == Presence::optional ? "" : "[" + text + "]";
   }
   std::string operator()(const PercentPair &pair) const

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "coupling/element/axes.hpp"
+#include "fem/material/wave_moduli.hpp"
 
 #include <algorithm>
 #include <cmath>

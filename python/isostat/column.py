@@ -135,7 +135,7 @@ def run(scene, output=None, *, materials=None, overwrite=False, resume=False, th
 
 
 class SoilPoint(_column.SoilPoint):
-    """One Gauss point of the material of a layer (elastic, iwan or mohr_coulomb), in an element test.
+    """One Gauss point of the material of a layer (elastic, iwan, mohr_coulomb or umat), in an element test.
 
     SoilPoint(scene, layer=None, vertical_stress=None)
 

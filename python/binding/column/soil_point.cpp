@@ -39,12 +39,13 @@ std::size_t layer_of(const ColumnScene &scene, const std::optional<std::string> 
   for (std::size_t k = 0; k < scene.layers.size(); ++k)
     {
       const ColumnLayer &layer = scene.layers[k];
-      if (name ? layer.name == *name || fmt::format("layer.{}", k) == *name : layer.from_formula())
+      const bool is_tested = layer.from_formula() || layer.material == LayerMaterial::umat;
+      if (name ? layer.name == *name || fmt::format("layer.{}", k) == *name : is_tested)
         {
-          if (layer.from_formula())
+          if (is_tested)
             return k;
           throw InputError(
-              fmt::format("layer \"{}\": its material is \"{}\", but must be elastic, iwan or mohr_coulomb. "
+              fmt::format("layer \"{}\": its material is \"{}\", but must be elastic, iwan, mohr_coulomb or umat. "
                           "Packings of grains are tested by element_test.",
                           layer.name, material_names[static_cast<int>(layer.material)]));
         }
@@ -52,7 +53,7 @@ std::size_t layer_of(const ColumnScene &scene, const std::optional<std::string> 
     }
   throw InputError(name ? fmt::format("layer \"{}\": the scene has no layer of this name. Give one of {}.", *name,
                                       fmt::join(names, ", "))
-                        : "scene: no layer is elastic, iwan or mohr_coulomb. Packings of grains are tested by "
+                        : "scene: no layer is elastic, iwan, mohr_coulomb or umat. Packings of grains are tested by "
                           "element_test.");
 }
 
@@ -134,7 +135,7 @@ void add_soil_point(py::module_ &module)
           "layer", [](const LayerPoint &self) { return self.soil.name; }, "Its name.")
       .def_property_readonly(
           "material", [](const LayerPoint &self) { return material_names[static_cast<int>(self.soil.material)]; },
-          "elastic, iwan or mohr_coulomb.")
+          "elastic, iwan, mohr_coulomb or umat.")
       .def_property_readonly(
           "crr", [](const LayerPoint &self) { return self.resistance; },
           "CRR at 15 cycles that the scene gives the layer in its middle; None: it gives none.")

@@ -81,7 +81,7 @@ def settled(point, vertical, tau, more):
 def soil_test(scene, layer=None, *, vertical_stress=None, ratios=None):
     """Element tests of the material of a layer, on one Gauss point at its stress in the middle of the layer.
 
-    scene            ColumnScene      layer  its name; None: the first that is elastic, iwan or mohr_coulomb
+    scene            ColumnScene      layer  its name; None: the first that is elastic, iwan, mohr_coulomb or umat
     vertical_stress  effective, Pa; None: in situ
     ratios           cyclic stress ratios tau/sigma'_v0; None: five around CRR(15)
 
@@ -165,7 +165,7 @@ def main(words: list[str]) -> int:
     line = command.line_of("soil-test", "Element tests of the material of a column's layer: G/G_max and damping, cycles "
                            "to liquefaction, settlement after it")
     command.add_scene(line, "scene file (TOML) of soil_column")
-    line.add_argument("--layer", help="its name, or layer.2 (default: the first that is elastic, iwan or mohr_coulomb)")
+    line.add_argument("--layer", help="its name, or layer.2 (default: the first that is elastic, iwan, mohr_coulomb or umat)")
     line.add_argument("--vertical-stress", type=pressure, help='effective, e.g. "100 kPa" (default: that in the middle of the layer)')
     line.add_argument("--ratios", help="cyclic stress ratios tau/sigma'_v0, e.g. 0.10,0.15,0.20 (default: five around that "
                       "of 15 cycles)")

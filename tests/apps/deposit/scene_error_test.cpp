@@ -103,7 +103,7 @@ TEST(ColumnSceneError, Materials)
       {"column.toml:6: layer.0.strength_ratio = 0.6; does not belong to a layer of material \"elastic\", only "
        "to iwan. Remove it or change the material."});
   expect_refused("[[layer]]\nthickness = \"1 m\"\nmaterial = \"sand\"\n" + dynamic,
-                 {"must be \"elastic\", \"iwan\", \"mohr_coulomb\", \"grains\" or \"user\""});
+                 {"must be \"elastic\", \"iwan\", \"mohr_coulomb\", \"grains\", \"umat\" or \"user\""});
   expect_refused("[[layer]]\nthickness = \"1 m\"\n" + dynamic, {"layer.0.material; is missing"});
   expect_refused(layer + sand + undrained + dynamic, {"--set layer.1.phase_transformation_ratio", "strength_ratio"},
                  {"layer.1.phase_transformation_ratio=0.6"});

@@ -294,6 +294,7 @@ TEST(ColumnScene, RoundTripToTheBit)
             item.saturation = scene.water.drainage == Drainage::coupled ? item.saturation : 1;
             item.iwan = item.material == LayerMaterial::iwan ? item.iwan : IwanParameters{};
             item.mohr_coulomb = {}; // its own test is below
+            item.umat = {};         // likewise
             item.sand_density = {}; // excludes contraction; resistance_test.cpp
             if (item.material == LayerMaterial::iwan)
               item.iwan.phase_transformation_ratio = item.iwan.strength_ratio / 3;

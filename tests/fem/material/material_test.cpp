@@ -5,6 +5,7 @@
 #include "fem/material/iwan_curve.hpp"
 #include "fem/material/mohr_coulomb.hpp"
 #include "fem/material/nonlocal.hpp"
+#include "fem/material/umat.hpp"
 #include "fem/material/viscoelastic.hpp"
 
 #include <cstring>
@@ -56,6 +57,12 @@ std::unique_ptr<Material> make_iwan_of_curve()
 std::unique_ptr<Material> make_viscoelastic()
 {
   return std::make_unique<Viscoelastic>(make_iwan_of_curve(), 0.02); // in statics: time alone changes no stress
+}
+
+std::unique_ptr<Material> make_umat()
+{
+  const std::vector<double> props = {50e6, 0.25, 0, 1};
+  return std::make_unique<Umat>(UmatParameters{UMAT_PROBE, props, {}, 20}, "", std::vector<UmatPoint>(n));
 }
 
 /// What the solver relies on, of every material.
@@ -226,7 +233,7 @@ TEST_P(MaterialProtocol, WaveModuliBoundTheStiffness)
 
 INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol,
                          testing::Values(make_elastic, make_iwan, make_mohr_coulomb, make_layers, make_composite,
-                                         make_nonlocal, make_iwan_of_curve, make_viscoelastic));
+                                         make_nonlocal, make_iwan_of_curve, make_viscoelastic, make_umat));
 
 TEST(CompositeMaterial, PointsOfTheFirstOfAStackComeFirst)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "coupling/batch/wave_moduli_cache.hpp"
+#include "fem/material/wave_moduli.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
