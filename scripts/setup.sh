@@ -22,7 +22,7 @@ packages=(
 clang=19
 if [[ "$(. /etc/os-release && echo "${VERSION_ID:-}")" == 12 ]]; then clang=14; fi
 case "${1:-}" in
-  --gates) packages+=(clang-format clang-tidy chromium) ;;
+  --gates) packages+=(clang-format clang-tidy chromium python3-vtk9 xvfb xauth) ;;
   --fuzz) packages+=(clang "libclang-rt-$clang-dev") ;;
   --coverage) packages+=(gcovr) ;;
   --packages) packages+=(help2man dpkg-dev fakeroot file mmdebstrap) ;;

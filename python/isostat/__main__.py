@@ -27,6 +27,8 @@ CAMPAIGNS = {"calibrate": "parameters of a scene from laboratory curves, by smal
 VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HTML file (default: compare.html)",
          "animate": "RESULTS [-o FILE.gif]: packings and their forces during the run, also as .mp4",
          "motion": "RESULTS [--at surface|input|within|DEPTH] [-o FILE.at2]: a motion of a soil column as PEER AT2",
+         "view": "RESULTS [--picture FILE.png]: grains, force chains and mesh to look at and turn, with a slider for time",
+         "vtkhdf": "RESULTS: grains, force chains and mesh over time for ParaView, one file each",
          "report": "RESULTS: draw figures and report.html of a results folder again, also during its run"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
@@ -75,6 +77,8 @@ def main(words=None):
         return importlib.import_module(f"isostat.campaign.{name.replace('-', '_')}").main(rest)
     if name in PACKINGS:
         return importlib.import_module("isostat.convert_packing").main(rest)
+    if name in ("view", "vtkhdf"):
+        return importlib.import_module(f"isostat.{name}").main(rest)
     if name in VIEWS:
         return view(name, rest)
     if name in ("--help", "-h"):

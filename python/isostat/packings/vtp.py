@@ -7,12 +7,14 @@ mass and the field data `box` or `cell`; ascii, or base64 without compression, i
 import base64
 import re
 import xml.etree.ElementTree as ET
+import zlib
 
 import numpy as np
 
 from isostat.packings.spheres import Found, Spheres, number, refuse
 
-TYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "UInt64": "<u8", "Int32": "<i4", "UInt32": "<u4"}
+TYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "UInt64": "<u8", "Int32": "<i4", "UInt32": "<u4",
+         "UInt8": "u1"}
 WIDTHS = {"radius": 1, "id": 1, "velocity": 3, "spin": 3, "density": 1, "mass": 1}
 
 
@@ -21,11 +23,27 @@ class Arrays:
 
     def __init__(self, path, file):
         self.path, self.header_bytes = path, 8 if file.get("header_type") == "UInt64" else 4
+        self.compressed = bool(file.get("compressor"))
 
     def refuse(self, what):
         refuse(self.path, 0, what)
 
+    def content(self, text):
+        """The bytes of an array and, in front of them, a header."""
+        if not self.compressed:
+            return base64.b64decode(text, validate=True)
+        n_blocks = int.from_bytes(base64.b64decode(text[:12])[:self.header_bytes], "little")
+        end = -(-(3 + n_blocks) * self.header_bytes // 3) * 4  # blocks, their size, that of the last, each compressed
+        header, packed = base64.b64decode(text[:end]), base64.b64decode(text[end:])
+        ends = np.cumsum(np.frombuffer(header, f"<u{self.header_bytes}")[3:]).tolist()
+        return bytes(self.header_bytes) + b"".join(zlib.decompress(packed[begin:end])
+                                                   for begin, end in zip([0, *ends], ends))
+
     def numbers(self, array):
+        return self.stored(array).astype(float)
+
+    def stored(self, array):
+        """The numbers in the type of the file."""
         kind, form, name, words = array.get("type"), array.get("format"), array.get("Name"), (array.text or "").split()
         if form == "ascii":
             values = [number(word) for word in words]
@@ -38,13 +56,13 @@ class Arrays:
         if kind not in TYPES:
             self.refuse(f"the array {name} is of type {kind}; expected Float64, Float32 or whole numbers")
         try:
-            data = base64.b64decode("".join(words), validate=True)
-        except ValueError:
+            data = self.content("".join(words))
+        except (ValueError, zlib.error):
             self.refuse(f"the array {name} is not base64; is the file damaged?")
         if len(data) < self.header_bytes:
             self.refuse(f"the array {name} has no content; is the file cut off?")
         kind = np.dtype(TYPES[kind])
-        return np.frombuffer(data, kind, (len(data) - self.header_bytes) // kind.itemsize, self.header_bytes).astype(float)
+        return np.frombuffer(data, kind, (len(data) - self.header_bytes) // kind.itemsize, self.header_bytes)
 
     def named(self, parent, name):
         """The numbers of the array of this name; empty without one."""
