@@ -33,8 +33,8 @@ class Stamps(unittest.TestCase):
             is_fresh = name in STAMPS and STAMPS[name]["scenes"] == study.fingerprint(name, study.load(name))
             for page in of_study:
                 with self.subTest(page):
-                    self.assertTrue(is_fresh or says_when(page, name), f"a default, or the study {name}, has changed. Run "
-                                    f"isostat study {name}, or say in a paragraph that names it when it was made, "
+                    self.assertTrue(is_fresh or says_when(page, name), f"a default, or the study {name}, has changed. "
+                                    f"Run isostat study {name}, or say in a paragraph that names it when it was made, "
                                     "and that it has not been run again since.")
 
     def test_a_default_that_changes_is_noticed(self):
