@@ -80,7 +80,7 @@ class Installed(support.ToleranceTest):
         self.assert_near([gamma_xy[-1], gamma_zy[-1]], [0, 0], 1e-4, "closes: the digits that are printed")
         self.assert_near(e, e[0], 1e-4, "constant volume, to second order in strains of 0.1 %")
 
-    def test_rve_in_c_and_fortran_is_that_in_cpp_to_the_bit(self):
+    def test_rve_in_c_and_fortran_is_that_in_cpp_bit_for_bit(self):
         expected = self.rows("rve_in_cpp", self.specimen)
         sigma, tau, e = expected[:, 1:4], expected[:, 4], expected[:, 5]
         self.assertEqual(len(expected), 12)

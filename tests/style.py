@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The ctest `style`: how long files, functions and lines may be, where a header is tested, why a tolerance is so large;
-and phrases that a reader stumbles over, in pages, scenes, messages and comments.
+and phrases that a reader stumbles over, in pages, scenes, messages, comments and names of tests.
 
     style.py [--root REPOSITORY] [--table]
 
@@ -58,6 +58,9 @@ CPP_TEXT = re.compile(r"//[^\n]*|/\*.*?\*/|R\"\(.*?\)\"|\"(?:\\.|[^\"\\\n])*\"|'
 # No text: strings of one word; then code marks, targets of links, and marks that begin or join lines of a comment.
 NO_TEXT = (re.compile(r"([\"'])[\w.@/-]*\1"),
            re.compile(r"`[^`\n]*`|\]\([^)\n]*\)|^\s*(?:///?<?|#+|\*|!)|\"\s*\n\s*f?\"", re.M))
+
+TEST_NAME = re.compile(r"^TEST(?:_[FP])?\(\w+,\s*(\w+)\)|def test_(\w+)", re.M)
+NEXT_WORD = re.compile(r"_|(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")  # in a name
 
 HELPERS = {"tests/support/near.hpp", "tests/apps/support.py", "tests/style.py"}
 
@@ -179,6 +182,7 @@ def text_of_script(text):
 def check_phrases(root, path):
     """Phrases of this file that a reader stumbles over, each with its line and what to write."""
     name, suffix, text = path.relative_to(root), path.suffix, path.read_text(encoding="utf-8")
+    tests = [NEXT_WORD.sub(" ", found[1] or found[2]) for found in TEST_NAME.finditer(text) if suffix in {".cpp", ".py"}]
     if suffix in {".cpp", ".hpp", ".c", ".h"}:
         text = text_of_cpp(text)
     elif suffix == ".py":
@@ -193,7 +197,7 @@ def check_phrases(root, path):
         words = " ".join(match[0].split())
         instead = next((write for phrase, write in PHRASES.items() if re.fullmatch(phrase, words, re.I)), "other words")
         problems.append(f"{name}:{text.count(chr(10), 0, match.start()) + 1}: '{words}'; write: {instead}")
-    return problems
+    return problems + [f"{name}: a test named '{words}'; write: another word than those of PHRASES" for words in tests if STUMBLE.search(words)]
 
 
 def check_file(root, path):

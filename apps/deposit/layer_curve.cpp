@@ -33,7 +33,7 @@ constexpr Key in_layer[] = {
    .text = "Of the curves darendeli and vucetic-dobry, per cent; left out: 0."},
   {.path = "overconsolidation_ratio", .field = member<&LayerCurve::overconsolidation_ratio>,
    .presence = Presence::optional, .value = "2", .range = {1, 100},
-   .reason = "because soil has borne its own weight, and no ice a hundred times as much",
+   .reason = "because the largest past stress is at least that of today, and at most a hundred times as large",
    .text = "Of the curve darendeli; left out: 1."},
   {.path = "uniformity", .field = member<&LayerCurve::uniformity>, .presence = Presence::optional, .value = "2",
    .range = {1, 1000}, .reason = "because d60 is not below d10", .text = "d60/d10; of the curve menq, which needs it."},

@@ -153,7 +153,7 @@ constexpr Key layer_keys[] = {
    .reason = "because water flows down the gradient, and through gravel no faster",
    .text = "Hydraulic conductivity k; 0 m/s: no water moves. Must be given if the drainage is coupled."},
   {.path = "k0", .field = member_of<ColumnLayer, &ColumnLayer::k0>, .presence = Presence::optional, .value = "0.5",
-   .range = {0, 5, true}, .reason = "because horizontal stress is compression too, and at 5 soil of 42 deg fails",
+   .range = {0, 5, true}, .reason = "because both stresses are compression, and at 5 soil with 42 deg of friction fails",
    .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it. Left "
            "out: 1 - sin(phi) of mohr_coulomb; 1 - `strength_ratio` of iwan, whose sin(phi) in simple shear that is, "
            "but so that at most 0.9 of the strength is used; else 0.5."},
@@ -289,7 +289,7 @@ constexpr Key analysis_keys[] = {
   {.path = "last_time", .field = member<&ColumnAnalysis::last_time>, .unit = unit::s, .presence = Presence::required,
    .value = "6 h", .range = positive, .kinds = consolidation, .text = "End of the last time step. After `first_time`."},
   {.path = "steps", .field = member<&ColumnAnalysis::steps>, .value = "50", .range = {2, 1e6},
-   .reason = "because first_time and last_time end a step each, and a million is beyond any use",
+   .reason = "because first_time and last_time end a step each, and no run needs a million of them",
    .kinds = consolidation,
    .text = "Number of time steps, each with its row in the results; the solver divides them where accuracy requires "
            "it."},

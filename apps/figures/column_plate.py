@@ -24,7 +24,7 @@ def plate(column):
     panels["pressure"].plot(way, column.plate["pressure"] / 1e3, color=BLUE)
     panels["pressure"].set_ylabel("Normal stress next to it (kPa)")
     for name in ("force", "pressure"):
-        panels[name].set(xlabel="Way of the plate into the soil (mm)", ylim=(min(0, panels[name].get_ylim()[0]), None))
+        panels[name].set(xlabel="Displacement into the soil (mm)", ylim=(min(0, panels[name].get_ylim()[0]), None))
     mesh, maps = Mesh(column.maps), column.maps
     gamma = 100 * abs(maps["gamma_xz"][-1])
     high = max(sorted(gamma)[int(0.98 * len(gamma))], 1e-6)

@@ -66,7 +66,7 @@ private:
       }
     catch (const RunFailure &failure)
       {
-        throw RunFailure(fmt::format("{}\n  the plate met at most {:.6g} kN/m, at {:+.4g} m, and {:.6g} kN/m last",
+        throw RunFailure(fmt::format("{}\n  force on the plate: at most {:.6g} kN/m, at {:+.4g} m; {:.6g} kN/m last",
                                      failure.what(), result_.largest / 1e3, result_.largest_at, result_.last / 1e3));
       }
     record_plate();

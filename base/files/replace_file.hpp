@@ -16,7 +16,7 @@ namespace isostat
 /// fails: `path` is whole then, the old content or the new, and the file next to it gone.
 void write_replacing(const std::filesystem::path &path, std::string_view text);
 
-/// The same for what is too long to be had at once.
+/// The same for what is too long to hold in memory.
 /// @param write  writes it, piece by piece; what it throws is passed on, and the old content stays
 void write_replacing(const std::filesystem::path &path, const std::function<void(std::ostream &)> &write);
 

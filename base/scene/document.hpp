@@ -23,7 +23,7 @@ class SceneDocument
 {
 public:
   /// @param name  of the file in messages; empty: the text is of a program, and messages name no lines
-  /// @throws InputError for text that is no TOML, or an override that is none
+  /// @throws InputError for text that is not TOML, or not an override
   SceneDocument(const SceneSchema &schema, const std::string &text, const std::string &name,
                 const std::vector<std::string> &overrides);
 

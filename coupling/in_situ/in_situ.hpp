@@ -4,7 +4,7 @@
 
 namespace isostat
 {
-/// How a specimen comes to its stress in situ.
+/// How a specimen is brought to its stress in situ.
 enum class InSituPath
 {
   all_stresses, ///< all six components are controlled (K0 or isotropic)

@@ -15,7 +15,7 @@ struct InSituState
   std::vector<std::byte> packed; ///< bring_to_stress()
 };
 
-/// States as bytes, for another rank.   @throws InputError  from append_states(): the bytes are none of to_bytes()
+/// States as bytes, for another rank.   @throws InputError  from append_states(): the bytes are not those of to_bytes()
 std::vector<std::byte> to_bytes(const std::vector<InSituState> &states);
 void append_states(std::vector<InSituState> &states, std::span<const std::byte> bytes);
 

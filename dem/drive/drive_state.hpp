@@ -214,7 +214,7 @@ struct RecordedState
   ISOSTAT_FIELDS(p, load, strain, step, snapshot_strain, stress, strains, tau, gamma)
 };
 
-/// What a stage had come to when it ended, as far as its conditions of ending look at it.
+/// What a stage had reached when it ended, as far as its conditions of ending use it.
 struct StageFigures
 {
   double driven = 0;                            ///< strain driven in the stage, amount [-]

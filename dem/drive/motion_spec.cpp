@@ -15,7 +15,7 @@ namespace
 constexpr Key damping(const char *value, const char *text)
 {
   return {.path = "damping", .field = member<&MotionSpec::damping>, .value = value, .range = {0, 1, false, true},
-          .reason = "because at 1 no grain would get moving", .text = text};
+          .reason = "because at 1 no grain would move", .text = text};
 }
 
 constexpr Key inertial_number(Presence presence, const char *value, const char *text)

@@ -52,7 +52,7 @@ constexpr Section fixed_sections[] = {
 
 using ranges::because_stresses, ranges::because_tan, ranges::fraction, ranges::positive, ranges::right_angle,
     ranges::stresses;
-constexpr const char *because_damping = "because at 1 no grain would get moving";
+constexpr const char *because_damping = "because at 1 no grain would move";
 
 // clang-format off
 constexpr Key title_key[] = {

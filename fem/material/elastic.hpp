@@ -22,7 +22,7 @@ Stiffness isotropic_stiffness(double bulk_modulus, double shear_modulus);
 double bulk_modulus(const WaveModuli &moduli);
 
 /// Linear elastic isotropic soil: stress = committed stress + C : increment of strain. Tension positive.
-/// Serves as closed-form check of whatever the solver does.
+/// A closed-form check of the solver.
 /// tested: tests/fem/material/elastic_test.cpp
 class Elastic : public RowMaterial
 {

@@ -38,7 +38,7 @@ constexpr Key iwan_in_scenes[] = {
   {.path = "critical_pressure", .field = member<&IwanParameters::critical_pressure>, .unit = unit::kPa,
    .value = "1000 kPa", .range = positive, .text = "Mean effective stress at which dilation ends."},
   {.path = "elements", .field = member<&IwanParameters::elements>, .value = "12", .range = {4, 128},
-   .reason = "because fewer do not follow the curve, and more add nothing to see",
+   .reason = "because fewer do not follow the curve, and more change nothing visible",
    .text = "Slip elements of a Gauss point: more make the curve smoother and the step more expensive."},
 };
 

@@ -10,7 +10,7 @@
 
 namespace isostat
 {
-/// What says how dense a sand is: one of them, or nothing.
+/// How dense a sand is: by one of these, or by none.
 struct SandDensity
 {
   std::optional<double> n1_60cs = {};          ///< (N1)60cs of the SPT, in [1, 37] [-]

@@ -199,7 +199,7 @@ class Biaxial(ColumnTest):
         self.assertEqual(inside.sum(), 4)
         self.assertGreater(maps["shear_strain"][-1][inside].min(), maps["shear_strain"][-1][~inside].mean())
 
-    def test_strains_that_the_mesh_cannot_take_as_small_are_told_of(self):
+    def test_strains_that_the_mesh_cannot_take_as_small_are_reported(self):
         for strain, large in ((0.05, False), (0.24, True)):
             result = self.run_block(ELASTIC.format(degree=1), *settings(analysis__axial_strain=strain))
             self.assert_done(result)

@@ -87,7 +87,7 @@ class Box(ColumnTest):
         text = (self.folder / "run/summary.txt").read_text(encoding="utf-8")
         self.assertRegex(text, r"surface moved +\+0\.\d+ m along x at x = 6 m")
 
-    def test_at_rest_it_stays_still_to_the_bit(self):
+    def test_at_rest_it_stays_still_bit_for_bit(self):
         rows, summary = self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", BOX))
         self.check_stress_in_situ()
         self.assertEqual(summary["surface_motion"]["largest"], 0)
@@ -104,14 +104,14 @@ class Box(ColumnTest):
         self.assert_near(box["surface_ux"], column["surface_ux"], 0.07 * np.abs(column["surface_ux"]).max(),
                          "walls, fifteen depths away, and liquefied sand, which magnifies what little comes from there")
 
-    def test_ranks_are_alike_to_the_bit(self):
+    def test_ranks_are_alike_bit_for_bit(self):
         self.check_ranks(*settings(analysis__duration="0.2 s"))
 
     def test_one_mesh_over_ranks(self):
         self.scene = self.write("shared.toml", SHARED)
         self.check_shared_mesh((4,), MOTION, 1e-7, *DISTRIBUTED, *settings(analysis__duration="0.2 s"))
 
-    def test_a_shared_mesh_goes_on_on_other_ranks(self):
+    def test_a_shared_mesh_continues_on_other_ranks(self):
         scene = self.write("shared.toml", SHARED)
         options = DISTRIBUTED + settings(analysis__duration="0.4 s", output__checkpoint="1e-9 min")
         self.assert_done(self.run_column(scene, "-o", "whole", *options))
@@ -134,7 +134,7 @@ class Box(ColumnTest):
         self.assert_near(maps["tau_xz"][0][inner], shear[inner], 0.25 * shear.max(),
                          "second order of the inclination, and what the walls leave one depth away")
 
-    def test_a_surcharge_beyond_what_the_soil_bears_is_told(self):
+    def test_a_surcharge_beyond_what_the_soil_bears_is_reported(self):
         weak = BOX.replace('"iwan"', '"mohr_coulomb"\nfriction_angle = "25 deg"\ndilatancy_angle = "0 deg"')
         strip = '[load]\nsurcharge = "{} kPa"\nsurcharge_from = "4 m"\nsurcharge_to = "6 m"\n'
         bears = self.run_column(self.write("bears.toml", weak + strip.format(2)), "-o", "bears", "--quiet",
@@ -147,12 +147,12 @@ class Box(ColumnTest):
             self.assertIn(words, fails.stderr)
         self.assertFalse((self.folder / "fails/history.csv").exists())
 
-    def test_a_sliver_of_an_element_is_told_by_its_time_step(self):
+    def test_a_sliver_of_an_element_is_named_by_its_time_step(self):
         sliver = BOX.replace('["3.6 m", "2.4 m"]', '["3.6 m", "0.001 m"]').replace('"2 m"]', '"1 m"]')
         result = self.run_column(self.write("sliver.toml", sliver), "-o", "sliver", "--quiet",
                                  *settings(analysis__time_step="0.1 ms"))
         self.assertEqual(result.returncode, 2)
         self.assertIn("the stable step of the stiffest element", result.stderr)
 
-    def test_goes_on_where_it_was_stopped(self):
+    def test_continues_where_it_was_stopped(self):
         self.assert_goes_on(self.scene, signal.SIGKILL, resume=functools.partial(self.run_on_ranks, 2))

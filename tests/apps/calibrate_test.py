@@ -208,7 +208,7 @@ class Resume(Calibrate):
         self.whole("whole")
         self.assert_same_calibration("whole", "parts")
 
-    def test_a_larger_budget_goes_on(self):
+    def test_a_larger_budget_continues(self):
         self.whole("out")
         before, rows = self.finish_times(), self.trials()
         self.plan = self.write("plan.toml", plan_text(6))

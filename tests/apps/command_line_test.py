@@ -148,7 +148,7 @@ class SpecimenMistakes(AppTest):
         result = self.run_test(scene, "-o", "smooth", "--set", "contact.friction=9 deg")
         self.assertIn("in balance with a friction of 18 deg and tested with 9 deg", result.stderr)
 
-    def test_beside_the_scene(self):
+    def test_next_to_the_scene(self):
         self.make_specimen()
         (self.folder / "scenes").mkdir()
         (self.folder / "specimen.h5").rename(self.folder / "scenes/specimen.h5")
@@ -192,7 +192,7 @@ class SpecimenMistakes(AppTest):
 
 
 class Version(AppTest):
-    def test_every_program_tells(self):
+    def test_every_program_says(self):
         programs = [path.parent.name for path in ROOT.glob("apps/*/main.cpp") if (BIN / path.parent.name).exists()]
         self.assertIn("element_test", programs)
         for program in [*programs, "isostat"]:

@@ -25,7 +25,7 @@ class Extend(AppTest):
         return self.run_test(self.scene, "-o", folder, "--set", f"{CYCLES}={cycles}", "--set", "output.folder=x",
                              *arguments)
 
-    def test_a_finished_run_goes_on_to_the_same_bits(self):
+    def test_a_finished_run_continues_to_the_same_bits(self):
         self.assert_done(self.run_to("whole", 4))
         self.assert_done(self.run_to("parts", 2))
         self.assertEqual(self.summary_of("parts")["reversals"], 4)
@@ -49,7 +49,7 @@ class Extend(AppTest):
         self.assertEqual([(end["stage"], end["by"], end["early"]) for end in one["ended"]],
                          [(0, "balance", False), (1, "cycles", False)])
 
-    def test_a_stopped_run_goes_on_to_a_later_end(self):
+    def test_a_stopped_run_continues_to_a_later_end(self):
         self.assert_done(self.run_to("whole", 4))
         code = self.run_and_stop(0.05, signal.SIGTERM, (self.folder / "parts/provenance.txt", False), self.scene, "-o",
                                  "parts", "--set", f"{CYCLES}=3", "--set", "output.folder=x")
@@ -57,7 +57,7 @@ class Extend(AppTest):
         self.assert_done(self.run_to("parts", 4, "--resume"))
         self.assert_same_results("whole", "parts", but=("scene.toml",))
 
-    def test_repeats_go_on(self):
+    def test_repeats_continue(self):
         stages = """[[stage]]
 kind = "path"
 x.keep = "stress"

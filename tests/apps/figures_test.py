@@ -225,7 +225,7 @@ class Figures(ToleranceTest):
         for path in figures:
             self.assertGreater(path.stat().st_size, 10000)
 
-    def test_nothing_there(self):
+    def test_missing_results(self):
         result = self.draw(self.folder)
         self.assertEqual(result.returncode, 2)
         self.assertIn("history.csv", result.stderr)

@@ -208,7 +208,7 @@ class Rest(GrainColumnTest):
         self.assertGreater(rows["step"][-1], 5000)
         return rows, float(re.search(r"calls, ([\d.]+) time steps each", result.stdout).group(1))
 
-    def test_frozen_column_stays_still_to_the_bit(self):
+    def test_frozen_column_stays_still_bit_for_bit(self):
         self.scene = self.write("frozen.toml", re.sub(r"\[\[motion\]\][^\[]*", "", GRAINS.format(cache=self.cache)))
         rows, steps = self.rest()
         for name in ("surface_ux", "surface_uy", "surface_uz", "surface_ax", "d0_u", "d1_u", "d1_gamma_xz"):
@@ -290,7 +290,7 @@ class Alone(GrainColumnTest):
         self.assert_done(result)
         return result.stdout, self.summary_of(arguments[1])
 
-    def test_stress_is_that_of_the_column_to_the_bit(self):
+    def test_stress_is_that_of_the_column_bit_for_bit(self):
         text, summary = self.replay("-o", "alone", "--every", 5)
         self.assertIn("bit for bit after all", text)
         self.assertGreater(summary["increments"], 50)

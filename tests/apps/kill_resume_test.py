@@ -179,7 +179,7 @@ class InstructionSets(AppTest):
                 print(f"  {name:8} {column:10} {off:.1e}", flush=True)
                 self.assert_below(off, 2e-4, "round-off that grows through 2,000 steps, to 2e-5 here")
 
-    def test_goes_on(self):
+    def test_continues(self):
         widest, other = self.sets[0], self.sets[-1]
         self.assert_done(self.run_on(other, "whole"))
         whole = results(self.folder / "whole")

@@ -32,7 +32,7 @@ class Library(AppTest):
             return {entry: (dict(group["numbers"].attrs), dict(group["provenance"].attrs),
                             group["snapshot/grains/position"][()].tobytes()) for entry, group in file.items()}
 
-    def test_densities_far_from_their_limits_are_warned_of(self):
+    def test_a_warning_names_densities_far_from_their_limits(self):
         result = self.make("-o", "loose.h5", "-q", "--set", "specimen.e_min=0.2", "--set", "specimen.e_max=0.3",
                            "--set", "contact.friction=5 deg")
         self.assert_done(result)
@@ -40,7 +40,7 @@ class Library(AppTest):
                       result.stderr)
         self.assertRegex(result.stderr, r"warning: s0001: D_r = -\d\.\d+: far looser than e_max\. Do e_min and e_max")
 
-    def test_unknown_limits_are_warned_of_whether_cached_or_not(self):
+    def test_a_warning_names_unknown_limits_whether_cached_or_not(self):
         for use in ((), ("--overwrite",)):
             result = self.make("-o", "other.h5", *use, "--set", "grading.solid_fraction=0.25",
                                "--set", 'grading.table=[["0.3 mm", 0], ["0.4 mm", 100]]')

@@ -122,7 +122,7 @@ class Micromechanics(AppTest):
         self.assert_refused(self.run_app("micromechanics", results, "--output", output), *parts)
         self.assertFalse((self.folder / "out").exists())
 
-    def test_nothing_there(self):
+    def test_missing_results(self):
         self.refuse("nowhere", "does not exist", results="nowhere")
 
     def test_no_snapshots(self):

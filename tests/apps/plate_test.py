@@ -97,5 +97,5 @@ class PlateTest(ColumnTest):
         self.assert_near(force[0], 0, 1e-9, "round-off of forces of kN")
         self.assertGreater(force[-1], MODULUS * way[-1] / 2 * 1, "the soil next to it helps")
 
-    def test_goes_on_where_it_was_stopped(self):
+    def test_continues_where_it_was_stopped(self):
         self.assert_goes_on(self.scene, signal.SIGKILL, *settings(analysis__load_steps=60))

@@ -91,7 +91,7 @@ class Narrow(unittest.TestCase):
         self.assertTrue(legend.x0 >= 0 and legend.x1 <= figure.bbox.width and legend.y1 <= boxes[-1].y0, legend)
         self.assertFalse(narrow.side_by_side(figure))
 
-    def test_a_colour_bar_stays_beside_its_panels(self):
+    def test_a_colour_bar_stays_next_to_its_panels(self):
         figure, panels = plt.subplots(1, 2, layout="constrained")
         self.addCleanup(plt.close, figure)
         bar = figure.colorbar(panels[0].scatter([0], [0], c=[1]), ax=panels).ax
@@ -223,7 +223,7 @@ class Reports(ReportTest):
         self.assert_done(self.run_app("isostat", "report", "rest"))
         self.assertEqual(contents(self.folder / "rest/figures"), contents(self.runs / "rest/figures"))
 
-    def test_links_in_a_folder_of_a_stranger_are_not_followed(self):
+    def test_links_in_an_untrusted_folder_are_not_followed(self):
         shutil.copytree(self.runs / "rest", self.folder / "rest")
         shutil.copy(self.runs / "rest.toml", self.folder)
         figures = sorted((self.folder / "rest/figures").glob("*.png"))

@@ -63,7 +63,7 @@ class LiquefactionResistance(AppTest):
         self.assertIsNone(fit["R2"])
         self.assertNotIn("failed", result.stderr)
 
-    def test_all_within_a_cycle_tell_no_slope(self):
+    def test_all_within_a_cycle_give_no_slope(self):
         result = self.run_it("--ratios", "0.6,0.9", "-n", "1", "-o", "out", "--no-figures")
         self.assert_done(result)
         self.assertTrue(all(float(row["N_liquefaction"]) <= 1 for row in self.table()), self.table())

@@ -52,14 +52,14 @@ class Slope(ColumnTest):
         self.assertEqual(np.abs(rows["d0_u"]).max(), 0)
         self.assertGreater(np.abs(rows["d1_u"]).max(), 100)
 
-    def test_ranks_are_alike_to_the_bit(self):
+    def test_ranks_are_alike_bit_for_bit(self):
         self.check_ranks(*settings(output__profile_interval="0.05 s", analysis__duration="0.3 s"))
 
     def test_one_mesh_over_ranks(self):
         self.check_shared_mesh((3,), ("downslope", "end_gamma", "end_gamma_depth", "max_ru", "settlement"), 1e-9,
                                *DISTRIBUTED, *settings(analysis__duration="0.3 s"))
 
-    def test_goes_on_where_it_was_stopped(self):
+    def test_continues_where_it_was_stopped(self):
         said = self.assert_goes_on(self.scene, signal.SIGTERM, *settings(output__profile_interval="0.1 s",
                                                                          analysis__duration="4 s"))
         self.assertIn("continue with --resume", said)

@@ -158,7 +158,7 @@ class MPIRanks(ColumnTest):
                 (self.folder / "out").rename(self.folder / "away")
                 self.assertRegex(self.message_of(process), r"failed: step \d+ \(t = [\d.]+ s\): out/history")
 
-    def test_replicated_to_the_bit(self):
+    def test_replicated_bit_for_bit(self):
         options = settings(output__profile_interval="0.05 s", output__paraview_interval="0.5 s")
         results = [self.run_on_ranks(n, self.scene, "-o", f"on{n}", *options) for n in (1, 3)]
         for n, result in zip((1, 3), results):
@@ -181,7 +181,7 @@ class MPIRanks(ColumnTest):
                 self.assert_near(rows[n][name], rows[1][name], 1e-10 * scale,
                                  f"round-off of sums over the ranks ({name})")
 
-    def test_distributed_goes_on_from_a_checkpoint(self):
+    def test_distributed_continues_from_a_checkpoint(self):
         """Interrupted on two ranks in the midst of the motion, resumed on others."""
         block = settings(mesh__dimension=3, mesh__distributed="true", mesh__width="4 m", mesh__cells_across=2)
         cap = settings(layer__0__permeability="1e-8 m/s")  # its expansion is of a whole mesh alone

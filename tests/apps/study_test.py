@@ -104,7 +104,7 @@ class Studies(AppTest):
         self.assert_done(again := self.study("tiny", "-o", "out"))
         self.assertIn("4 runs, 0 to do", again.stdout)
 
-    def test_it_is_stopped_and_goes_on(self):
+    def test_it_is_stopped_and_continues(self):
         """In a run of a program, then in that of a function."""
         self.tiny(steps=200_000)
         self.write("wait", "")

@@ -195,7 +195,7 @@ class EarlyEnd(AppTest):
         self.assertEqual((end["stage"], end["times"], end["at_once"]), (0, 1, False))
         self.assertIn("until.q = 150 kPa (", end["text"])
 
-    def test_what_ended_a_stage_is_said(self):
+    def test_summary_says_what_ended_a_stage(self):
         stages = PATH + 'max_steps = 400\nuntil.strain = 1e-4\n' + PATH + "max_steps = 50\n"
         result = self.run_test(self.scene("whole", stages), "-o", "whole")
         self.assert_done(result)
@@ -256,7 +256,7 @@ class EarlyEnd(AppTest):
         self.assertIn("Stage 0 (path), cycle 1 of 3 of stages 0 to 1:", report)
         self.assertIn("ended by max_steps = 5 before any of its conditions was met", report)
 
-    def test_a_condition_that_is_met_when_it_begins_is_told(self):
+    def test_a_condition_that_is_met_when_it_begins_is_reported(self):
         result = self.run_test(self.scene("met", PATH + 'until.p = "200 kPa"\n' + REST), "-o", "met")
         self.assert_done(result)
         self.assertIn("warning: stage 0 (path): ended in its first step, because one of its conditions was met when it "
@@ -277,7 +277,7 @@ class Control(AppTest):
         self.assertNotIn("control lost", result.stderr + result.stdout)
         self.assertEqual(self.losses("slow"), [])
 
-    def test_lost_control_is_told(self):
+    def test_lost_control_is_reported(self):
         result = self.run_test(self.scene(60), "-o", "fast")
         self.assert_done(result)
         self.assertIn("warning: control lost: " + LOSS, result.stderr)

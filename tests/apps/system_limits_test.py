@@ -19,7 +19,7 @@ class SystemLimits(FailingRuns):
         self.scene = self.write("scene.toml", SHORT_TEST)
         self.arguments = (self.scene, *SAVED)
 
-    def test_every_reason_is_told(self):
+    def test_every_reason_is_reported(self):
         command = self.command("element_test", *self.arguments, *OUTPUT)
         _, n = self.run_failing(command, "write")
         for code in (errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EACCES):
@@ -61,7 +61,7 @@ class SystemLimits(FailingRuns):
         self.assertGreater(n, 0)
         self.assertEqual(results(self.folder / "out"), whole)
 
-    def test_nobody_can_read_what_is_told(self):
+    def test_no_one_can_read_what_is_reported(self):
         """A log on a full disk, a pipe whose end is gone, or standard files that are closed: results are all there."""
         command = self.command("element_test", *self.arguments, *OUTPUT)
         self.assert_done(self.run_app("element_test", *self.arguments, *OUTPUT))

@@ -104,7 +104,7 @@ TEST(Units, NumbersReadNaturally)
 }
 
 /// Any double, whatever its bits, comes back from its text.
-TEST(Units, RoundTripToTheBit)
+TEST(Units, RoundTripBitForBit)
 {
   std::mt19937_64 random(7);
   for (int i = 0; i < 20000; ++i)

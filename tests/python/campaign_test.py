@@ -32,7 +32,7 @@ class CampaignTest(FolderTest):
         self.assertEqual(codes, {"one": 0})
         self.assertEqual((one.results / "provenance.txt").read_text(encoding="utf-8").count("command "), 1)
 
-    def test_files_of_somebody_stay(self):
+    def test_files_of_users_stay(self):
         one = self.run_of("one")
         one.results.mkdir(parents=True)
         (one.results / "thesis.tex").write_text("precious", encoding="utf-8")
@@ -40,7 +40,7 @@ class CampaignTest(FolderTest):
         self.assertIn("holds no results", one.reason)
         self.assertEqual((one.results / "thesis.tex").read_text(encoding="utf-8"), "precious")
 
-    def test_another_scene_and_a_damaged_checkpoint_begin_anew(self):
+    def test_another_scene_and_a_damaged_checkpoint_begin_again(self):
         one, other = self.run_of("one"), self.run_of("one", **{"motion.damping": 0.3})
         self.assertEqual(self.complete(one), {"one": 0})
         self.assertTrue(list((one.results / "checkpoint").glob("*.h5")))

@@ -235,7 +235,7 @@ class ColumnTest(ToleranceTest):
                                 text=True, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}, check=True)
         self.assertTrue(result.stdout.strip().endswith("True"), result.stdout)
 
-    def test_interrupted_and_resumed_to_the_bit(self):
+    def test_interrupted_and_resumed_bit_for_bit(self):
         whole = self.run_with(Hyperbolic(), "whole")
         before = signal.getsignal(signal.SIGINT)
         with self.assertRaises(KeyboardInterrupt):

@@ -87,7 +87,7 @@ class PackingsTest(ToleranceTest):
         moved = parts[0] - parts[1]
         self.assert_near(moved, np.round(moved), 1e-14, "whole edges, except for round-off")
 
-    def test_what_a_format_cannot_hold_is_said(self):
+    def test_a_message_says_what_a_format_cannot_hold(self):
         heavy = isostat.Specimen(isostat.Snapshot.from_spheres(CENTRES, [R] * 3, cell=TILTED, density=2717.3))
         for name, words in (("a.txt", ("grain density, 2717.3 kg/m3", "YADE's text")), ("a.data", ("LAMMPS wants",)),
                             ("a.dump", ("grain density", "LAMMPS wants")), ("a.h5", ())):

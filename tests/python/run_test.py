@@ -46,7 +46,7 @@ class RunTest(FolderTest):
     def run_scene_of(self, scene, *arguments, **keywords):
         return isostat.run(scene, *arguments, cache=self.cache, **keywords)
 
-    def test_another_python_is_told_which_one_the_package_is_for(self):
+    def test_another_python_learns_which_one_the_package_is_for(self):
         """Without site packages NumPy is missing, as under most other Pythons."""
         environment = {**os.environ, "PYTHONPATH": str(BINARIES.parent / "python")}
         done = subprocess.run([sys.executable, "-S", "-c", "import isostat"], capture_output=True, text=True,
@@ -55,7 +55,7 @@ class RunTest(FolderTest):
         self.assertRegex(done.stderr, "No module named 'numpy'. This isostat was built for cpython-3[0-9]+-.*; this is "
                                       f"{sys.implementation.cache_tag}, .*python.*/usr/bin/python3 with python3-numpy")
 
-    def test_history_is_that_of_the_program_to_the_bit(self):
+    def test_history_is_that_of_the_program_bit_for_bit(self):
         scene = self.folder / "small.toml"
         scene.write_text(SCENE, encoding="utf-8")
         subprocess.run([BINARIES / "element_test", scene, "-o", self.folder / "program", "--quiet", "--no-figures"],
@@ -108,7 +108,7 @@ class RunTest(FolderTest):
         self.assert_near(drained["r_u"][undrained][0], 0, 1e-9, "it counts from where the volume begins to be kept")
         self.assertGreater(drained["r_u"][undrained].max(), 0.001)
 
-    def test_a_finished_run_goes_on_to_a_later_end(self):
+    def test_a_finished_run_continues_to_a_later_end(self):
         short = self.scene.with_(**{"stage.0.until.cycles": 1})
         self.assertEqual(self.run_scene_of(short, self.folder / "longer").summary["reversals"], 2)
         later = self.run_scene_of(self.scene, self.folder / "longer", resume=True)
@@ -135,7 +135,7 @@ class RunTest(FolderTest):
         self.assertGreater(len(moved), 2)
         self.assertFalse(np.array_equal(moved[0], moved[-1]))
 
-    def test_a_callback_stops_a_run_and_it_goes_on(self):
+    def test_a_callback_stops_a_run_and_it_continues(self):
         whole = self.whole
         half = whole.history["step"][-1] / 2
         stopped = self.run_scene(self.folder / "halves", on_step=lambda moment: moment.step < half, every=1)

@@ -42,7 +42,7 @@ class RveTest(ToleranceTest):
         with self.assertRaisesRegex(isostat.InputError, "tolerance = 0"):
             moved.relax(balance=0)
 
-    def test_a_saved_state_comes_back_to_the_bit(self):
+    def test_a_saved_state_comes_back_bit_for_bit(self):
         rve = isostat.Rve(self.packing)
         strain = np.diag([5e-5, -1e-4, 5e-5])
         state = rve.save()

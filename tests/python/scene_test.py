@@ -84,7 +84,7 @@ class SceneTest(ToleranceTest):
             isostat.Scene("nowhere.toml")
         self.assertTrue(issubclass(isostat.InputError, ValueError))
 
-    def test_laws_tell_their_parameters(self):
+    def test_laws_give_their_parameters(self):
         law = isostat.Scene(TEXT).law
         self.assertEqual(law.parameters["young"], 1e10)
         self.assertIn("friction", law.parameters)

@@ -50,7 +50,7 @@ class SnapshotTest(ToleranceTest):
         with self.assertRaises(ValueError):
             positions[0, 0] = 1
 
-    def test_a_specimen_comes_back_to_the_bit(self):
+    def test_a_specimen_comes_back_bit_for_bit(self):
         with tempfile.TemporaryDirectory() as folder:
             path = str(pathlib.Path(folder) / "three.h5")
             isostat.write_specimen(path, isostat.Specimen(three_spheres()))

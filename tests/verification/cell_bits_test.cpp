@@ -103,7 +103,7 @@ TEST(CellThreads, LookingAtForcesChangesNoBit)
     }
 }
 
-TEST(CellCheckpoint, GoesOnToTheSameBitsAlsoRightAfterAFlip)
+TEST(CellCheckpoint, ContinuesToTheSameBitsAlsoRightAfterAFlip)
 {
   Assembly a(before_flip(5e-5));
   a.settings.time_step = dt;
@@ -143,7 +143,7 @@ TEST(CellCheckpoint, GoesOnToTheSameBitsAlsoRightAfterAFlip)
     }
 }
 
-TEST(CellState, RestoredGoesOnToTheSameBitsAlsoAcrossAFlip)
+TEST(CellState, RestoredContinuesToTheSameBitsAlsoAcrossAFlip)
 {
   Assembly a(before_flip(5e-5));
   a.settings.time_step = dt;

@@ -96,7 +96,7 @@ TEST(CellSimpleShear, TurnsAtItsStressRatio)
                       "the overshoot of a reversal, at most 500 Pa, and rows that miss the crest");
 }
 
-TEST(CellProgramme, AStoppedRunGoesOnToTheSameBits)
+TEST(CellProgramme, AStoppedRunContinuesToTheSameBits)
 {
   const Stage stage = test::sheared_to<UndrainedSimpleShear>(2e-3);
   const Snapshot whole = run({stage}, cell()).end;

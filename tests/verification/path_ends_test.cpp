@@ -128,7 +128,7 @@ TEST(PathRows, OfAStageThatDrivesNothingGoByEveryComponent)
   EXPECT_BELOW_BECAUSE(widest, 1.2e3, "record_stress is 1 kPa, and a step adds some");
 }
 
-TEST(PathEnd, ThatIsMetWhenItBeginsIsTold)
+TEST(PathEnd, ThatIsMetWhenItBeginsIsReported)
 {
   Path path = keeping(PathCondition::stress, PathCondition::stress, 0.01);
   path.end.q = 0.05e3; // 0.1 % of p' is 0.2 kPa
@@ -148,7 +148,7 @@ TEST(PathEnd, ThatIsMetWhenItBeginsIsTold)
   EXPECT_EQ(later.state.ends[0].by, EndCondition::q);
 }
 
-TEST(PathEnd, ThatItsLimitOfStepsComesBeforeIsToldAndKept)
+TEST(PathEnd, ThatItsLimitOfStepsComesBeforeIsReportedAndKept)
 {
   Path path = keeping(PathCondition::stress, PathCondition::stress, 0.01);
   path.max_steps = 300;

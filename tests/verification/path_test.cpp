@@ -217,7 +217,7 @@ TEST_F(PathFile, ThatChangedIsNotGoneOnWith)
   EXPECT_THROW(run_programme(programme({changed}), assembly, state, watcher), InputError);
 }
 
-TEST(PathProgramme, RepeatsAndGoesOnToTheSameBits)
+TEST(PathProgramme, RepeatsAndContinuesToTheSameBits)
 {
   Path load = keeping(PathCondition::stress, PathCondition::stress, 2e-4);
   Path unload = load;

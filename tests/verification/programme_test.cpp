@@ -118,7 +118,7 @@ TEST(UndrainedCyclic, TurnsWithinHalfAKilopascalAtConstantVolume)
                        "round-off of a product of three edges in each of some 1e4 steps");
 }
 
-TEST(Programme, RepeatsToTheBitWhateverIsRecorded)
+TEST(Programme, RepeatsBitForBitWhateverIsRecorded)
 {
   const Stage stage = test::sheared_to<UndrainedMonotonic>(1e-3);
   const Result often = run({stage}, test::specimen(500, 10), 10),
@@ -127,7 +127,7 @@ TEST(Programme, RepeatsToTheBitWhateverIsRecorded)
   EXPECT_GT(often.watcher.rows.size(), rarely.watcher.rows.size());
 }
 
-TEST(Programme, StoppedAndResumedGoesOnToTheSameBits)
+TEST(Programme, StoppedAndResumedContinuesToTheSameBits)
 {
   const Snapshot &start = test::specimen(500, 10);
   expect_same_end(cycles(1), start, {137, 401}, run({cycles(1)}, start).end);

@@ -85,7 +85,7 @@ Discretisation<1> column(double height, unsigned cells)
 }
 } // namespace
 
-TEST(RveColumn, OneElementIsThePackingAloneToTheBit)
+TEST(RveColumn, OneElementIsThePackingAloneBitForBit)
 {
   const Snapshot &specimen = test::soft_specimen(4);
   const Discretisation<1> space = column(1, 1);

@@ -43,7 +43,7 @@ SoilProfile loose_slope()
 }
 } // namespace
 
-TEST(SlopeDynamics, AtRestStaysStillToTheBit)
+TEST(SlopeDynamics, AtRestStaysStillBitForBit)
 {
   const Discretisation<1> space({.soil = loose_slope()}, shaken_supports(false));
   Iwan material({}, space.n_points());

@@ -66,7 +66,7 @@ public:
   bool turns() const final { return true; }
   std::optional<double> fraction_done(const DriveState &state) const final;
   Conditions conditions(const StageFigures &reached) const final;
-  /// With a bias alone: without one a specimen outside turns at once, as it always did.
+  /// With a bias alone: without one a specimen outside turns at once.
   std::optional<LoadRange> required_loads(double sigma_v) const final;
   bool notes_response() const final { return true; }
 

@@ -76,7 +76,7 @@ TEST(LayerCurve, MistakesAreRefused)
   expect_refused(layer + "curve = \"epri\"\n" + rest, {"does not belong to a layer of material \"elastic\""});
 }
 
-TEST(LayerCurve, TablesAreFoundBesideTheScene)
+TEST(LayerCurve, TablesAreFoundNextToTheScene)
 {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / "isostat_layer_curve";

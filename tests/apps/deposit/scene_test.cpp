@@ -268,7 +268,7 @@ void scramble(const Key &key, const Field &field, std::mt19937_64 &random)
     **text = (*text)->empty() ? "" : "a \"b\" \\ c\n\t# \u00b5";
 }
 
-TEST(ColumnScene, RoundTripToTheBit)
+TEST(ColumnScene, RoundTripBitForBit)
 {
   std::mt19937_64 random(5);
   for (const std::string &text : {several, smallest, consolidation, sand + undrained + dynamic})

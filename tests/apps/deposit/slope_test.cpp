@@ -69,7 +69,7 @@ TEST(SlopeScene, FactorOfSafetyOfTheInfiniteSlope)
   EXPECT_FALSE(slope_safety(parse_column_scene(layer + dry + slope("10") + dynamic, "elastic")));
 }
 
-TEST(SlopeScene, WhatCannotStandIsRefused)
+TEST(SlopeScene, SlopesThatFallAreRefused)
 {
   const std::string loose = sand + "k0 = 1.0\nstrength_ratio = 0.6\n";
   expect_refused(

@@ -40,7 +40,7 @@ protected:
   }
 };
 
-TEST_F(Hdf5, ArraysComeBackToTheBit)
+TEST_F(Hdf5, ArraysComeBackBitForBit)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const std::vector<double> reals{0.1, -0.0, 5e-324, 1.7976931348623157e308, nan, -inf};
@@ -165,7 +165,7 @@ TEST_F(Hdf5, BadItemsNameFileItemAndExpectation)
   EXPECT_THAT(message_of<InputError>([&] { group.attribute<std::string>("number"); }), HasSubstr("text"));
 }
 
-TEST_F(Hdf5, RowsThatAreNotThereAskForNoMemory)
+TEST_F(Hdf5, RowsThatDoNotExistAskForNoMemory)
 {
   File file = File::create(folder / "huge.h5");
   Group root = file.root();

@@ -89,7 +89,7 @@ TEST(DecimationFilter, RestBeforeTheFirstSampleAndTheMeanOfWhatIsThereAfterTheLa
   EXPECT_NEAR_BECAUSE(w0, 2 * 0.375 / 2, 0.01, "the weight in the middle of a sinc, except for its window");
 }
 
-TEST(DecimationFilter, GoesOnFromItsSamplesToTheBit)
+TEST(DecimationFilter, ContinuesFromItsSamplesBitForBit)
 {
   DecimationFilter whole(2, 3), resumed(2, 3);
   const auto sample = [](int n) { return std::array{std::sin(0.7 * n), std::cos(0.3 * n)}; };

@@ -28,7 +28,7 @@ TEST(Progress, ALineHasShareRateTimeLeftAndState)
               testing::MatchesRegex(" 75.0 %  step      1100 +[1-9][0-9]* 1/s  ETA 0 s  state"));
 }
 
-TEST(Progress, StartsAnewWithANewStage)
+TEST(Progress, StartsAgainWithANewStage)
 {
   Progress progress(false, 0);
   progress.due(0, 0.1);

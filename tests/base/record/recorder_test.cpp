@@ -119,7 +119,7 @@ TEST_F(RecorderFiles, ResumedEqualsUninterrupted)
   EXPECT_EQ(stored("p"), p);
 }
 
-TEST_F(RecorderFiles, ResumeZeroStartsAnew)
+TEST_F(RecorderFiles, ResumeZeroStartsAgain)
 {
   {
     Recorder recorder(folder / "run", columns);
@@ -159,7 +159,7 @@ TEST_F(RecorderFiles, WrongResumesAreInputErrorsAndChangeNothing)
   EXPECT_EQ(csv(), text);
 }
 
-TEST_F(RecorderFiles, BytesDoNotTellWhenRowsWereFlushed)
+TEST_F(RecorderFiles, BytesDoNotShowWhenRowsWereFlushed)
 {
   std::string at_once;
   for (const int every : {20'000, 1, 7, 700, 1024, 5000})
@@ -188,7 +188,7 @@ TEST_F(RecorderFiles, BytesDoNotTellWhenRowsWereFlushed)
     }
 }
 
-TEST_F(RecorderFiles, ResumeWritesTheCsvAnewWhateverBecameOfIt)
+TEST_F(RecorderFiles, ResumeWritesTheCsvAgainWhateverBecameOfIt)
 {
   {
     Recorder recorder(folder / "run", columns);
@@ -208,7 +208,7 @@ TEST_F(RecorderFiles, ResumeWritesTheCsvAnewWhateverBecameOfIt)
   EXPECT_EQ(csv(), text);
 }
 
-TEST_F(RecorderFiles, ACsvThatOthersChangeIsWrittenAnew)
+TEST_F(RecorderFiles, ACsvThatOthersChangeIsWrittenAgain)
 {
   {
     Recorder recorder(folder / "run", columns);

@@ -123,7 +123,7 @@ TEST(RveMaterial, RollbackLeavesNoTrace)
   EXPECT_EQ(material.element(0)->stress(), straight.element(0)->stress());
 }
 
-TEST(RveMaterial, BytesGoOnToTheSameBits)
+TEST(RveMaterial, BytesContinueToTheSameBits)
 {
   RveMaterial material(specimens(), {}, MPI_COMM_SELF), other(specimens(), {}, MPI_COMM_SELF);
   std::vector<Stress> stresses(3);
@@ -244,7 +244,7 @@ TEST(RveMaterial, TangentIsThatOfTheElementAndAnswersForSmallTrials)
   EXPECT_LT(moduli[0].s, moduli[0].p);
 }
 
-TEST(RveMaterial, WaveModuliAreFoundAnewWhenThePressureRises)
+TEST(RveMaterial, WaveModuliAreFoundAgainWhenThePressureRises)
 {
   RveMaterialSettings settings = drained();
   RveMaterial material({test::soft_specimen(4)}, settings, MPI_COMM_SELF);

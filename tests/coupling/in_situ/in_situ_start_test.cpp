@@ -59,7 +59,7 @@ TEST_F(Start, WhatTheCacheHoldsIsNotPreparedAgain)
     EXPECT_EQ(second.specimen(id).grains.position, first.specimen(id).grains.position);
 }
 
-TEST_F(Start, ADamagedCacheIsMadeAnew)
+TEST_F(Start, ADamagedCacheIsMadeAgain)
 {
   const std::filesystem::path path = folder / "cache.h5";
   const std::vector<InSituState> prepared = start(InSituCache("")).prepared();

@@ -157,7 +157,7 @@ TEST_F(InSitu, PointsMayBeOfOtherSands)
   EXPECT_EQ(one, other);
 }
 
-TEST_F(InSitu, WhatCannotBeIsSaid)
+TEST_F(InSitu, RefusesWhatCannotBe)
 {
   RveMaterial material(std::vector<SpecimenRequest>(2), settings, MPI_COMM_SELF);
   const auto with = [&](const Stress &second) {

@@ -51,7 +51,7 @@ TEST(SpecimenRequest, SeedsOfAPointFollowEachOtherOrGoRoundTheMixedOnes)
   EXPECT_EQ(request.seed_of(2), 4u);
 }
 
-TEST(SpecimenRequest, NeedsSeedsForAllPackingsOrForTheLot)
+TEST(SpecimenRequest, NeedsSeedsForAllPackingsOrForTheDraw)
 {
   SpecimenRequest request{0.5, 3};
   EXPECT_EQ(request.n_seeds(2), 5u);
@@ -59,7 +59,7 @@ TEST(SpecimenRequest, NeedsSeedsForAllPackingsOrForTheLot)
   EXPECT_EQ(request.n_seeds(2), 7u);
 }
 
-TEST_F(Library, MustHaveSoManySeeds)
+TEST_F(Library, MustHaveThisManySeeds)
 {
   test::write_library(folder / "library.h5");
   EXPECT_NO_THROW(check_seeds(folder / "library.h5", {0.5, 0}, 1, "soil", "grains"));

@@ -164,7 +164,7 @@ TEST(Assembly, SnapshotHoldsEveryTouchingPair)
   EXPECT_NEAR_BECAUSE(push, walls, 1e-12 * walls, "round-off of a sum over the grains at the walls");
 }
 
-TEST(Assembly, TwoRunsAreEqualToTheBit)
+TEST(Assembly, TwoRunsAreEqualBitForBit)
 {
   Assembly a = make_assembly(packing_at_pressure(), true), b = make_assembly(packing_at_pressure(), true);
   shear(a, 700);
@@ -194,7 +194,7 @@ TEST(Assembly, MeasuringChangesNoBit)
   expect_same_motion(plain, watched);
 }
 
-TEST(Assembly, GoesOnFromACheckpointToTheBit)
+TEST(Assembly, ContinuesFromACheckpointBitForBit)
 {
   for (const bool measure_energy : {false, true})
     {
@@ -214,7 +214,7 @@ TEST(Assembly, GoesOnFromACheckpointToTheBit)
     }
 }
 
-TEST(Assembly, SwitchingFrictionOffForgetsAndOnStartsAnew)
+TEST(Assembly, SwitchingFrictionOffForgetsAndOnStartsAgain)
 {
   Assembly assembly = make_assembly(packing_at_pressure());
   Law frictionless = assembly.law();
@@ -226,7 +226,7 @@ TEST(Assembly, SwitchingFrictionOffForgetsAndOnStartsAnew)
   EXPECT_TRUE(assembly.checkpoint().contacts.empty());
 }
 
-TEST(Assembly, GravityAcceleratesAFreeGrain)
+TEST(Assembly, GravityAcceleratesARattler)
 {
   Snapshot s;
   s.grains = make_packing({Vec3(0.5, 0.5, 0.5)}, {1e-3}, 2650);

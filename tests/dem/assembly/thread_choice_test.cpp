@@ -24,7 +24,7 @@ double percent_on_several(ThreadChoice &choice, double on_one, double on_several
 }
 } // namespace
 
-TEST(ThreadChoice, TakesTheFasterWayButForTrials)
+TEST(ThreadChoice, TakesTheFasterWayExceptForTrials)
 {
   for (double on_one : {1e-5, 3e-4, 1e-3})
     {

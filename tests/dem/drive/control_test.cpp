@@ -41,7 +41,7 @@ TEST_F(Control, KeptWithinTheToleranceIsNoLoss)
   EXPECT_NEAR_BECAUSE(state.control.sigma_x.worst, 0.0099, 1e-12, "round-off of a quotient");
 }
 
-TEST_F(Control, LostForMoreThanTheShareIsToldOnceWithItsFigures)
+TEST_F(Control, LostForMoreThanTheShareIsReportedOnceWithItsFigures)
 {
   for (int k = 0; k < 20; ++k)
     EXPECT_TRUE(check(p0).empty());
@@ -64,7 +64,7 @@ TEST_F(Control, LostForMoreThanTheShareIsToldOnceWithItsFigures)
     EXPECT_NE(line.find(part), std::string::npos) << line;
 }
 
-TEST_F(Control, ALossIsNoneWhereTheStageGoesOnForLonger)
+TEST_F(Control, ALossIsNoneWhereTheStageContinuesForLonger)
 {
   for (int k = 0; k < 6; ++k)
     EXPECT_EQ(check(120).size(), k == 5) << "6 % of a strain of 1 %";
@@ -121,7 +121,7 @@ Programme too_fast()
   return {.record = {}, .stages = {stage}};
 }
 
-TEST(ControlOfARun, IsToldAndMayEndIt)
+TEST(ControlOfARun, IsReportedAndMayEndIt)
 {
   Assembly assembly(test::specimen(300, 10));
   DriveState state;
@@ -140,7 +140,7 @@ TEST(ControlOfARun, IsToldAndMayEndIt)
 }
 
 /// What was seen before a stop is not forgotten.
-TEST(ControlOfARun, IsTheSameWhenItIsStoppedOnItsWay)
+TEST(ControlOfARun, IsTheSameWhenItIsStoppedUnderway)
 {
   struct Stopping : test::Unobserved
   {

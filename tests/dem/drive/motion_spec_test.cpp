@@ -23,7 +23,7 @@ TEST(MotionSpec, EveryFieldHasItsKey)
   EXPECT_EQ(listed, keyed);
 }
 
-TEST(MotionSpec, RecipeTellsEveryFieldApart)
+TEST(MotionSpec, RecipeDistinguishesEveryField)
 {
   const MotionSpec usual;
   EXPECT_EQ(recipe_text(usual), "0.050000000000000003 0.10000000000000001 0.10000000000000001 1 "

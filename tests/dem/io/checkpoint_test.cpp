@@ -30,7 +30,7 @@ Checkpoint example(double mark)
 
 using CheckpointTest = TemporaryFolder;
 
-TEST_F(CheckpointTest, ComesBackToTheBit)
+TEST_F(CheckpointTest, ComesBackBitForBit)
 {
   const Checkpoint kept = example(0.1);
   write_checkpoint(folder, kept);

@@ -28,7 +28,7 @@ protected:
   }
 };
 
-TEST_F(SnapshotFile, APeriodicCellComesBackToTheBit)
+TEST_F(SnapshotFile, APeriodicCellComesBackBitForBit)
 {
   Snapshot s = small_snapshot();
   EXPECT_FALSE(round_trip(s).cell.has_value());
@@ -43,7 +43,7 @@ TEST_F(SnapshotFile, APeriodicCellComesBackToTheBit)
   EXPECT_EQ(s.volume(), r.volume());
 }
 
-TEST_F(SnapshotFile, RoundTripToTheBit)
+TEST_F(SnapshotFile, RoundTripBitForBit)
 {
   const Snapshot s = small_snapshot(), r = round_trip(s);
   test::expect_same_bits(s, r); // padding included

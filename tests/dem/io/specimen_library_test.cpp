@@ -66,7 +66,7 @@ protected:
   }
 };
 
-TEST_F(SpecimenLibrary, RoundTripToTheBit)
+TEST_F(SpecimenLibrary, RoundTripBitForBit)
 {
   write_two();
   EXPECT_TRUE(is_specimen_library(path));
@@ -74,7 +74,7 @@ TEST_F(SpecimenLibrary, RoundTripToTheBit)
   expect_same(read_library_entry(path, "s0002"), realisation(2));
 }
 
-TEST_F(SpecimenLibrary, ListTellsEntriesApart)
+TEST_F(SpecimenLibrary, ListDistinguishesEntries)
 {
   write_two();
   const std::vector<LibraryEntry> entries = list_library(path);

@@ -133,7 +133,7 @@ TEST(CarriedGrainsInAPacking, FeelNoWavesOfWallsThatStart)
                        "contacts that open and close; without carrying it is as large");
 }
 
-TEST(CarriedGrainsInAPacking, GoOnToTheBitAfterACheckpoint)
+TEST(CarriedGrainsInAPacking, ContinueBitForBitAfterACheckpoint)
 {
   const Started whole = started(true), resumed = started(true, 25);
   EXPECT_EQ(whole.x, resumed.x);

@@ -134,7 +134,7 @@ TEST(GivenPacking, AnotherStiffnessNeedsConsolidation)
   EXPECT_THAT(notes(scene("", ratio, at_pressure())), ElementsAre());
 }
 
-TEST(GivenPacking, LessFrictionIsWarnedOf)
+TEST(GivenPacking, AWarningNamesLessFriction)
 {
   EXPECT_THAT(notes(scene("", "young = \"1 GPa\"\nfriction = \"5 deg\"", at_pressure())),
               ElementsAre(HasSubstr("in balance with a friction of 18 deg and tested with 5 deg")));

@@ -148,7 +148,7 @@ TEST(SortedAlongCurve, ContactsAreSeenFromTheirFirstGrain)
                                      [](const WallContact &c) { return std::pair(c.wall, c.grain); }));
 }
 
-TEST(SortedAlongCurve, GoesOnTheSameWay)
+TEST(SortedAlongCurve, ContinuesTheSameWay)
 {
   // only the order of summation differs
   const Snapshot s = shuffled_lattice();

@@ -77,7 +77,7 @@ std::vector<double> rows(const Mat3 &m)
 }
 } // namespace
 
-TEST_F(IsostatRve, NumbersAreThoseOfTheClassToTheBit)
+TEST_F(IsostatRve, NumbersAreThoseOfTheClassBitForBit)
 {
   Rve direct(test::rve_specimen(), usual());
   isostat_rve *rve = create();
@@ -153,7 +153,7 @@ TEST_F(IsostatRve, SettingsReachTheElement)
   EXPECT_EQ(response.steps, 70u); // some 30 would be enough at 50 1/s
 }
 
-TEST_F(IsostatRve, RestoreGoesOnToTheSameBits)
+TEST_F(IsostatRve, RestoreContinuesToTheSameBits)
 {
   isostat_rve *rve = create();
   isostat_rve_state *start = nullptr;
@@ -187,7 +187,7 @@ TEST_F(IsostatRve, AStateOfOtherGrainsIsRefused)
   isostat_rve_state_destroy(start);
 }
 
-TEST_F(IsostatRve, BytesGoOnToTheSameBits)
+TEST_F(IsostatRve, BytesContinueToTheSameBits)
 {
   isostat_rve *rve = create(), *copy = nullptr;
   ASSERT_EQ(isostat_rve_undrained(rve, shear, nullptr), ISOSTAT_OK);

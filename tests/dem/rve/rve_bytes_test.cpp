@@ -20,7 +20,7 @@ using test::expect_same_bits, test::run, test::simple_shear;
 const Snapshot &specimen() { return test::rve_specimen(); }
 } // namespace
 
-TEST(Rve, BytesGoOnToTheSameBits)
+TEST(Rve, BytesContinueToTheSameBits)
 {
   Rve rve(specimen(), {});
   run(rve, 0, 5);
@@ -34,11 +34,11 @@ TEST(Rve, BytesGoOnToTheSameBits)
 }
 
 // Runs only in the process that BytesGoOnInAnotherProcess starts.
-TEST(RveChild, GoesOnFromAFile)
+TEST(RveChild, ContinuesFromAFile)
 {
   const char *path = std::getenv("ISOSTAT_PACKED_RVE");
   if (!path)
-    GTEST_SKIP() << "started by RveProcess.BytesGoOnInAnotherProcess";
+    GTEST_SKIP() << "started by RveProcess.BytesContinueInAnotherProcess";
   std::ifstream in(path, std::ios::binary);
   const std::vector<char> read((std::istreambuf_iterator<char>(in)), {});
   Rve rve = Rve::unpack(std::as_bytes(std::span(read)), {});
@@ -49,7 +49,7 @@ TEST(RveChild, GoesOnFromAFile)
             static_cast<std::streamsize>(8 * state.grains.grains.size()));
 }
 
-TEST(RveProcess, BytesGoOnInAnotherProcess)
+TEST(RveProcess, BytesContinueInAnotherProcess)
 {
   Rve rve(specimen(), {});
   run(rve, 0, 5);
@@ -59,7 +59,7 @@ TEST(RveProcess, BytesGoOnInAnotherProcess)
       .write(reinterpret_cast<const char *>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   const std::string self = fs::read_symlink("/proc/self/exe").string();
   const std::string command = "ISOSTAT_PACKED_RVE='" + path.string() + "' '" + self +
-                              "' --gtest_filter=RveChild.GoesOnFromAFile >/dev/null 2>&1";
+                              "' --gtest_filter=RveChild.ContinuesFromAFile >/dev/null 2>&1";
   ASSERT_EQ(std::system(command.c_str()), 0);
   run(rve, 5, 40);
   const RveState here = rve.save();
@@ -72,7 +72,7 @@ TEST(RveProcess, BytesGoOnInAnotherProcess)
   fs::remove(path.string() + ".out");
 }
 
-TEST(Rve, BytesGoOnAtTheRateThatTheyAreGiven)
+TEST(Rve, BytesContinueAtTheRateThatTheyAreGiven)
 {
   const std::vector<std::byte> bytes = Rve(specimen(), {}).pack();
   RveSettings slow;

@@ -33,7 +33,7 @@ TEST(Rve, StressIsThatOfTheGrainsAsTheyAre)
   EXPECT_BELOW_BECAUSE(rve.kinetic_stress().norm(), 1e-3 * sigma.norm(), "I = 4e-5 is far from inertia");
 }
 
-TEST(Rve, RestoreGoesOnToTheSameBits)
+TEST(Rve, RestoreContinuesToTheSameBits)
 {
   Rve rve(specimen(), {});
   run(rve, 0, 5);
@@ -63,7 +63,7 @@ TEST(Rve, SavingAndLookingChangeNothing)
   expect_same_bits(watched.save(), alone.save());
 }
 
-TEST(Rve, AxisPermutationsGiveTheRotatedStressToTheBit)
+TEST(Rve, AxisPermutationsGiveTheRotatedStressBitForBit)
 {
   Mat3 about_z, about_y, about_111;
   about_z << 0, -1, 0, 1, 0, 0, 0, 0, 1;

@@ -269,7 +269,7 @@ std::string stages(const std::vector<std::string> &lines)
   return text;
 }
 
-TEST(Scene, RoundTripToTheBit)
+TEST(Scene, RoundTripBitForBit)
 {
   std::mt19937_64 random(3);
   const std::string box =

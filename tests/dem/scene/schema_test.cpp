@@ -13,7 +13,7 @@ namespace
 {
 const std::string smallest = "[grading]\n[specimen]\nrelative_density = 0.5\n";
 
-TEST(Scene, WhatIsLeftOutOfContactIsSwitchedOff)
+TEST(Scene, WhatIsMissingInContactIsSwitchedOff)
 {
   const auto features = [](const std::string &contact) {
     const Scene scene = parse_scene(smallest + "[contact]\n" + contact, "scene.toml");

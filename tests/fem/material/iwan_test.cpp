@@ -106,7 +106,7 @@ TEST(Iwan, AStaticShearIsThatOfVirginLoading)
     }
 }
 
-TEST(Iwan, AStaticShearBesideAK0)
+TEST(Iwan, AStaticShearNextToAK0)
 {
   IwanParameters sand = dry();
   sand.elements = 64;

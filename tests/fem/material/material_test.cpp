@@ -127,7 +127,7 @@ TEST_P(MaterialProtocol, EveryTrialStartsFromTheCommittedState)
   EXPECT_NE(m->pack(), bytes);
 }
 
-TEST_P(MaterialProtocol, ComesBackFromBytesToTheBit)
+TEST_P(MaterialProtocol, ComesBackFromBytesBitForBit)
 {
   auto m = fresh(), copy = GetParam()();
   advance(*m, 100);

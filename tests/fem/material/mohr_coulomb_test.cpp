@@ -264,7 +264,7 @@ TEST(MohrCoulomb, TangentIsTheDerivativeOfTheUpdate)
                        "central differences of 1e-8 of strains of 1e-3; a millionth of the elastic one at the apex");
 }
 
-TEST(MohrCoulomb, NoStrainLeavesTheStressToTheBit)
+TEST(MohrCoulomb, NoStrainLeavesTheStressBitForBit)
 {
   std::mt19937 random(5);
   MohrCoulombPoint s(softening());

@@ -106,7 +106,7 @@ TEST(Viscoelastic, StressesOfRestAreThoseOfTheInnerMaterial)
   for (int k = 0; k < 6; ++k)
     EXPECT_NEAR_BECAUSE(late[k], still[k], 1e-9, "round-off, and exp(-48) of a kPa");
 }
-TEST(Viscoelastic, StateComesBackToTheBit)
+TEST(Viscoelastic, StateComesBackBitForBit)
 {
   const auto make = [](double damping) {
     Viscoelastic m(std::make_unique<Elastic>(soil, 2), damping);

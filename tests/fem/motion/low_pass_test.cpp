@@ -38,7 +38,7 @@ TEST(LowPass, PassesAllWithoutACornerAndAboveAQuarterOfTheSamples)
       EXPECT_EQ(filter(x), x);
 }
 
-TEST(LowPass, GoesOnFromItsState)
+TEST(LowPass, ContinuesFromItsState)
 {
   LowPass one(25, 1e-3), other(25, 1e-3);
   for (int k = 0; k < 50; ++k)

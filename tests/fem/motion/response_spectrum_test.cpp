@@ -76,7 +76,7 @@ TEST(ResponseSpectrum, FreeVibrationAfterTheMotionCounts)
   EXPECT_NEAR_BECAUSE(kick.peaks().absolute[0], 2 * std::numbers::pi * 1e-3, 1e-5, "an impulse of 1e-3 m/s, then w v");
 }
 
-TEST(ResponseSpectrum, GoesOnFromItsStateToTheBit)
+TEST(ResponseSpectrum, ContinuesFromItsStateBitForBit)
 {
   const std::vector<double> periods = spectrum_periods();
   EXPECT_EQ(periods.size(), 160u);

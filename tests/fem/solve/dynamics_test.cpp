@@ -79,7 +79,7 @@ std::array<double, 4> surface_after(Drainage drainage, unsigned across)
 }
 } // namespace
 
-TEST(Dynamics, ColumnAtRestStaysAtRestToTheBit)
+TEST(Dynamics, ColumnAtRestStaysAtRestBitForBit)
 {
   const Discretisation<1> space = block<1>();
   for (Drainage drainage : {Drainage::dry, Drainage::undrained, Drainage::coupled})
@@ -212,7 +212,7 @@ TEST(Dynamics, ColumnEqualsTiedBlocks)
     }
 }
 
-TEST(Dynamics, RestoredRunGoesOnToTheSameBits)
+TEST(Dynamics, RestoredRunContinuesToTheSameBits)
 {
   for (const Drainage drainage : {Drainage::dry, Drainage::undrained, Drainage::coupled})
     {

@@ -55,7 +55,7 @@ TEST(StaticsState, SandUnderShearThatDrains)
   EXPECT_GT(pressure, 3e3);
 }
 
-TEST(StaticsState, ResumesToTheBit)
+TEST(StaticsState, ResumesBitForBit)
 {
   Sand whole, first, second;
   const auto some_steps = [](Statics &statics) {

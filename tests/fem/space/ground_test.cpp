@@ -62,7 +62,7 @@ TEST(GroundMesh, HasTheAreaBelowTheLineAndLayersInProportion)
   EXPECT_NEAR_BECAUSE(upper, 0.4 * area, 1e-12, "round-off");
 }
 
-TEST(GroundMesh, TellsDepthsBelowTheGroundOfItsLine)
+TEST(GroundMesh, SeparatesDepthsBelowTheGroundOfItsLine)
 {
   const Discretisation<2> space(hill(), {});
   const ColumnLine column = column_line(space);

@@ -140,7 +140,7 @@ TEST(AirPressure, SmallPressuresSeeTheStiffnessInSitu)
 }
 
 /// What a checkpoint holds is all there is: the storage follows from the pressures.
-TEST(AirPressure, GoesOnToTheBit)
+TEST(AirPressure, ContinuesBitForBit)
 {
   SoilProfile profile = wet_soil(0.99, 0.02, AirLaw::boyle);
   profile.layers[0].permeability = 1e-3;
