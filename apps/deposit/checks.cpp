@@ -124,6 +124,12 @@ void check_shear_velocity(const SceneDocument &document, const ColumnLayer &laye
                                 velocity, range.low, range.high));
 }
 
+bool water_flows(const ColumnScene &scene)
+{
+  return scene.water.drainage == Drainage::coupled &&
+         (scene.analysis.kind == AnalysisKind::dynamic || scene.analysis.kind == AnalysisKind::consolidation);
+}
+
 void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t i)
 {
   if (scene.layers[i].material == LayerMaterial::iwan)
@@ -140,6 +146,10 @@ void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t 
   if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))
     document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water should move.");
+  if (layer.permeability_law != PermeabilityLaw::constant && !water_flows(scene))
+    document.refuse(prefix + ".permeability_law",
+                    "has no effect where no water moves: in an analysis of kind plate or biaxial, and unless "
+                    "water.drainage is \"coupled\". Remove it.");
   check_shear_velocity(document, layer, prefix);
   const bool block = scene.analysis.kind == AnalysisKind::biaxial; // neither K0 nor, dry, water
   if (block && scene.water.drainage == Drainage::dry && layer.permeability > 0)

@@ -18,6 +18,7 @@ namespace
 {
 constexpr const char *base_choices[] = {"rigid", "compliant"};
 constexpr const char *water_base_choices[] = {"closed", "drained"};
+constexpr const char *permeability_laws[] = {"constant", "kozeny-carman"};
 constexpr const char *load_axes[] = {"x", "y", "z"};
 constexpr const char *load_choices[] = {"none", "step", "harmonic"};
 
@@ -152,6 +153,11 @@ constexpr Key layer_keys[] = {
    .presence = Presence::experiment, .value = "1e-5 m/s", .range = {0, 1},
    .reason = "because water flows down the gradient, and through gravel no faster",
    .text = "Hydraulic conductivity k; 0 m/s: no water moves. Must be given if the drainage is coupled."},
+  {.path = "permeability_law", .field = member_of<ColumnLayer, &ColumnLayer::permeability_law>, .value = "constant",
+   .choices = permeability_laws,
+   .text = "constant: `permeability` at all times; kozeny-carman: that at the void ratio e of `porosity`, from which it "
+           "follows e^3/(1 + e) as the pores close and open (docs/theory_column.md), and the storage of the water "
+           "follows n. Only where drainage is \"coupled\" and water moves."},
   {.path = "k0", .field = member_of<ColumnLayer, &ColumnLayer::k0>, .presence = Presence::optional, .value = "0.5",
    .range = {0, 5, true}, .reason = "because horizontal stress is compression too, and at 5 soil of 42 deg fails",
    .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it. Left "

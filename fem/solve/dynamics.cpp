@@ -51,6 +51,8 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
     throw InputError(fmt::format("time step = {:.6g} s; must be <= {:.6g} s, the stable step of the stiffest element. "
                                  "Give a smaller one, or leave it out.",
                                  time_step_, stable));
+  if (settings_.drainage == Drainage::coupled && space_.mesh().soil.permeability_varies())
+    permeable_strains_.assign(space_.n_points(), 0.0);
   prepare_steps();
   if (settings_.lagged_compressibility)
     {
@@ -92,7 +94,7 @@ void Dynamics::prepare_steps()
   if (viscosity_)
     viscosity_->set_time_step(time_step_);
   if (settings_.drainage == Drainage::coupled)
-    pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_);
+    pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_, permeable_strains_);
 }
 
 /// Unknowns of cells below the water table, where an undrained column keeps its volume.
@@ -183,6 +185,8 @@ void Dynamics::for_each_field(Self &self, Visit &&visit)
   visit("initial_stress", self.initial_stresses_);
   visit("minus_reference_force", self.minus_reference_);
   visit("lagged_pressure", self.lagged_pressure_);
+  if (!self.permeable_strains_.empty())
+    visit("permeable_strain", self.permeable_strains_);
   if (self.viscosity_)
     SkeletonViscosity::for_each_field(*self.viscosity_, visit);
   visit.sum("kinetic", self.energy_.kinetic);
@@ -209,7 +213,7 @@ void Dynamics::restore(const SolverState &state)
   reader.take();
   const double found_anew = time_step_;
   for_each_field(*this, reader);
-  if (time_step_ != found_anew)
+  if (time_step_ != found_anew || !permeable_strains_.empty())
     prepare_steps();
   if (viscosity_)
     material_.wave_moduli(moduli_); // for the next step

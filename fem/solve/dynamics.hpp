@@ -51,8 +51,9 @@ struct DynamicsEnergy
 ///
 /// sigma' has the viscous stress of SkeletonViscosity in it, if there is one.
 /// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is for the
-/// pressure (PressureSystem), constant and factorised once. The skeleton alone limits dt; water of any stiffness and
-/// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
+/// pressure (PressureSystem), constant and factorised once; where the permeability follows the void ratio, again when
+/// it has changed by 1 % anywhere. The skeleton alone limits dt; water of any stiffness and permeability does not
+/// (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
 /// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,
 /// doi:10.1061/JMCEA3.0001144). Undrained, soil below the water table keeps its volume (u_z = 0), soil above it is
 /// dry and moves vertically, too. The state at the start is taken as in equilibrium: a frozen column stays still bit
@@ -107,6 +108,7 @@ private:
   template <typename Self, typename Visit>
   static void for_each_field(Self &self, Visit &&visit);
   // dynamics_step.cpp
+  void follow_void_ratio();
   void find_loads();
   void start();
   void find_pressure();
@@ -127,7 +129,8 @@ private:
   Vector u_, v_, next_;          ///< next_: v half a step before v_
   Vector p_, p_before_, p_next_; ///< p_next_ is scratch
   std::vector<Stress> stresses_;
-  std::vector<double> lagged_pressure_; ///< at the points, lagged compressibility only
+  std::vector<double> lagged_pressure_;   ///< at the points, lagged compressibility only
+  std::vector<double> permeable_strains_; ///< volume strains of pressure_system_; empty: its permeability is constant
   std::optional<SkeletonViscosity> viscosity_;
   DynamicsEnergy half_way_; ///< of this rank, at time() - dt/2
   DynamicsEnergy energy_;   ///< of this rank at time() - dt

@@ -11,6 +11,18 @@
 
 namespace isostat
 {
+/// Share of k by which the matrix of (8) may be late: errors and cost are in docs/theory_column.md at (3a).
+constexpr double late_permeability = 1e-2;
+
+void Dynamics::follow_void_ratio()
+{
+  std::vector<double> strains = volume_strains(space_, u_);
+  if (!permeability_differs(space_, permeable_strains_, strains, late_permeability))
+    return;
+  permeable_strains_.swap(strains);
+  pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_, permeable_strains_);
+}
+
 /// load_: what comes from the dashpot and the surface. frame_: inertia of a moving base. force_: F - F0.
 void Dynamics::find_loads()
 {
@@ -186,6 +198,8 @@ void Dynamics::step()
   find_loads();
   if (step_ == 0)
     start();
+  if (!permeable_strains_.empty())
+    follow_void_ratio();
   if (pressure_system_)
     {
       find_pressure();
