@@ -91,7 +91,7 @@ void check_air(const SceneDocument &document, const ColumnScene &scene)
                     "situ. Remove it.");
 }
 
-/// What follows from other keys where it is not given: densities, K0, the interval of rows.
+/// What follows from other keys where it is not given: densities, K0, viscosity, the interval of rows.
 void complete(const SceneDocument &document, ColumnScene &scene)
 {
   const auto weigh = [&](auto &part) {
@@ -105,6 +105,11 @@ void complete(const SceneDocument &document, ColumnScene &scene)
       weigh(scene.layers[i]);
       if (!document.find(fmt::format("layer.{}.k0", i)))
         scene.layers[i].k0 = scene.layers[i].default_k0();
+    }
+  if (scene.analysis.kind == AnalysisKind::dynamic && !scene.analysis.viscosity)
+    {
+      const auto is_elastic = [](const ColumnLayer &layer) { return layer.material == LayerMaterial::elastic; };
+      scene.analysis.viscosity = std::ranges::all_of(scene.layers, is_elastic) ? 0 : 1e-4;
     }
   if (!document.find("output.history_interval"))
     scene.output.history_interval =
