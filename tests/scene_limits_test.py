@@ -30,6 +30,7 @@ STATED = {
         "water.table": "Less than the height of the soil", "slope.angle": "Less than the soil can bear",
         "layer.saturation": "Below 1 only below the water table", "layer.density": "Above that of the water",
         "layer.permeability": "Must be given if the drainage is coupled", "layer.cell_size": "At most 1000000 elements",
+        "layer.permeability_law": "Only where drainage is",
         "layer.material": "", "layer.umat.nstatv": "at least that in `umat.statev`", "layer.table": "",
         "water.base": 'drained only where drainage is "coupled"',
         "layer.phase_transformation_ratio": "at most `strength_ratio`",

@@ -91,7 +91,7 @@ void check_air(const SceneDocument &document, const ColumnScene &scene)
                     "situ. Remove it.");
 }
 
-/// What follows from other keys where it is not given: densities, K0, the interval of rows.
+/// What follows from other keys where it is not given: densities, K0, viscosity, the interval of rows.
 void complete(const SceneDocument &document, ColumnScene &scene)
 {
   const auto weigh = [&](auto &part) {
@@ -105,6 +105,11 @@ void complete(const SceneDocument &document, ColumnScene &scene)
       weigh(scene.layers[i]);
       if (!document.find(fmt::format("layer.{}.k0", i)))
         scene.layers[i].k0 = scene.layers[i].default_k0();
+    }
+  if (scene.analysis.kind == AnalysisKind::dynamic && !scene.analysis.viscosity)
+    {
+      const auto is_elastic = [](const ColumnLayer &layer) { return layer.material == LayerMaterial::elastic; };
+      scene.analysis.viscosity = std::ranges::all_of(scene.layers, is_elastic) ? 0 : 1e-4;
     }
   if (!document.find("output.history_interval"))
     scene.output.history_interval =
@@ -124,6 +129,12 @@ void check_shear_velocity(const SceneDocument &document, const ColumnLayer &laye
                                 velocity, range.low, range.high));
 }
 
+bool water_flows(const ColumnScene &scene)
+{
+  return scene.water.drainage == Drainage::coupled &&
+         (scene.analysis.kind == AnalysisKind::dynamic || scene.analysis.kind == AnalysisKind::consolidation);
+}
+
 void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t i)
 {
   if (scene.layers[i].material == LayerMaterial::iwan)
@@ -140,6 +151,10 @@ void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t 
   if (scene.water.drainage == Drainage::coupled && !document.find(prefix + ".permeability"))
     document.refuse(prefix + ".permeability", "is missing; water.drainage = \"coupled\" needs it. Give for example "
                                               "permeability = \"1e-5 m/s\", or \"0 m/s\" if no water should move.");
+  if (layer.permeability_law != PermeabilityLaw::constant && !water_flows(scene))
+    document.refuse(prefix + ".permeability_law",
+                    "has no effect where no water moves: in an analysis of kind plate or biaxial, and unless "
+                    "water.drainage is \"coupled\". Remove it.");
   check_shear_velocity(document, layer, prefix);
   const bool block = scene.analysis.kind == AnalysisKind::biaxial; // neither K0 nor, dry, water
   if (block && scene.water.drainage == Drainage::dry && layer.permeability > 0)

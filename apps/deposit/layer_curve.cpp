@@ -121,7 +121,7 @@ void check_curve(const SceneDocument &document, ColumnScene &scene, std::size_t 
                     "needs uniformity and d50. Give for example uniformity = 2 and d50 = \"0.3 mm\".");
   if (curve.unloading == Unloading::mrdf && !curve.is_given())
     document.refuse(prefix + "unloading", "needs the damping of a curve. Give one, or unloading = \"masing\".");
-  if (layer.shear_strength && document.find(prefix + "strength_ratio"))
+  if (layer.shear_strength && layer.iwan.strength_ratio != IwanParameters().strength_ratio)
     document.refuse(prefix + "shear_strength", "excludes strength_ratio, which follows from it. Keep one of them.");
   if (curve.is_given() && !layer.sand_density.given() && !document.find(prefix + "contraction") &&
       !document.find(prefix + "dilation"))

@@ -191,7 +191,7 @@ struct ColumnAnalysis
   std::optional<double> time_step; ///< left out: `safety` of the stable one
   double safety = 0.8;
   double mass_damping = 0;              ///< a_M, 1/s
-  double viscosity = 1e-4;              ///< beta of SkeletonViscosity, s; 0: none
+  std::optional<double> viscosity;      ///< beta of SkeletonViscosity, s; 0: none; read_column_scene() sets it
   bool large_strain = false;            ///< DynamicsSettings::large_strain
   double highest_frequency = 25;        ///< of interest: what is faster may be damped, Hz
   double first_time = 0, last_time = 0; ///< consolidation

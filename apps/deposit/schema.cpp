@@ -18,6 +18,7 @@ namespace
 {
 constexpr const char *base_choices[] = {"rigid", "compliant"};
 constexpr const char *water_base_choices[] = {"closed", "drained"};
+constexpr const char *permeability_laws[] = {"constant", "kozeny-carman"};
 constexpr const char *load_axes[] = {"x", "y", "z"};
 constexpr const char *load_choices[] = {"none", "step", "harmonic"};
 
@@ -152,6 +153,11 @@ constexpr Key layer_keys[] = {
    .presence = Presence::experiment, .value = "1e-5 m/s", .range = {0, 1},
    .reason = "because water flows down the gradient, and through gravel no faster",
    .text = "Hydraulic conductivity k; 0 m/s: no water moves. Must be given if the drainage is coupled."},
+  {.path = "permeability_law", .field = member_of<ColumnLayer, &ColumnLayer::permeability_law>, .value = "constant",
+   .choices = permeability_laws,
+   .text = "constant: `permeability` at all times; kozeny-carman: that at the void ratio e of `porosity`, from which it "
+           "follows e^3/(1 + e) as the pores close and open (docs/theory_column.md), and the storage of the water "
+           "follows n. Only where drainage is \"coupled\" and water moves."},
   {.path = "k0", .field = member_of<ColumnLayer, &ColumnLayer::k0>, .presence = Presence::optional, .value = "0.5",
    .range = {0, 5, true}, .reason = "because both stresses are compression, and at 5 soil with 42 deg of friction fails",
    .text = "Horizontal over vertical effective stress in situ; on a slope, along the surface over normal to it. Left "
@@ -272,12 +278,14 @@ constexpr Key analysis_keys[] = {
    .text = "Highest frequency of interest. `viscosity` damps what vibrates faster. A warning names elements that are "
            "too long for its wave, or for that of the motion if it has no such frequencies. The summary gives the "
            "share of the surface's acceleration above it."},
-  {.path = "viscosity", .field = member<&ColumnAnalysis::viscosity>, .unit = unit::ms, .value = "0.1 ms",
-   .range = not_negative, .reason = "because a negative one would feed vibrations", .kinds = dynamic,
+  {.path = "viscosity", .field = member<&ColumnAnalysis::viscosity>, .unit = unit::ms, .presence = Presence::optional,
+   .value = "0.1 ms", .range = not_negative, .reason = "because a negative one would feed vibrations", .kinds = dynamic,
    .text = "Viscosity beta of the skeleton over its modulus, which acts above `highest_frequency` f_c: it damps "
-           "frequency f by the fraction pi f beta f^2 / (f^2 + f_c^2) of critical (0.04 % at 10 Hz, 1.5 % at 58 Hz). "
-           "Lowers the stable time step dt to sqrt(beta^2 + dt^2) - beta: by 10 % where it is 1 ms, by 59 % where it "
-           "is as small as beta. 0 ms: none, and layers and elements ring on (docs/results/column_dissipation.md)."},
+           "frequency f by the fraction pi f beta f^2 / (f^2 + f_c^2) of critical (of 0.1 ms, 0.08 % at 12.5 Hz, 1.5 % "
+           "at 58 Hz). Left out: 0 ms where all layers are elastic, with or without `damping`, whose response is that "
+           "of the closed form then; else 0.1 ms, without which layers and elements ring on "
+           "(docs/results/column_dissipation.md). Lowers the stable time step dt to sqrt(beta^2 + dt^2) - beta: by 10 % "
+           "where it is 1 ms, by 59 % where it is beta, to a sixteenth where it is beta/8, as in fine meshes."},
   {.path = "large_strain", .field = member<&ColumnAnalysis::large_strain>, .value = "false", .kinds = dynamic,
    .text = "Cells move with the soil: stresses are those of the deformed soil (updated Lagrangian), and water flows "
            "through it as it is. Left out, strains are small: at settlements or rotations of 10 % they are wrong by "

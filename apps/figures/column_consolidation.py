@@ -23,7 +23,7 @@ def exact_solution(column):
     if not layer or not load or layer["permeability"] <= 0 or column.water["table"] > 0:
         return None
     has_air = layer["saturation"] < 1 or column.water["henry"] > 0  # its stiffness rises with the depth
-    return None if has_air else Terzaghi(layer, column.water, load)
+    return None if has_air or layer["permeability_law"] != "constant" else Terzaghi(layer, column.water, load)
 
 
 def chosen_rows(time, exact):

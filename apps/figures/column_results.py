@@ -34,7 +34,8 @@ def of_layer(table):
     return {"height": quantity(table["thickness"]), "density": density, "velocity": velocity,
             "poisson_ratio": table.get("poisson_ratio", 0.3), "porosity": table.get("porosity", 0.4),
             "permeability": quantity(table.get("permeability"), 0.0), "material": table["material"],
-            "saturation": float(table.get("saturation", 1))}
+            "saturation": float(table.get("saturation", 1)),
+            "permeability_law": table.get("permeability_law", "constant")}
 
 
 def table_if_there(path, otherwise):

@@ -19,7 +19,7 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
     settings.multiple = scene.output.history_interval;
   settings.safety = scene.analysis.safety;
   settings.mass_damping = scene.analysis.mass_damping;
-  settings.viscosity = scene.analysis.viscosity;
+  settings.viscosity = scene.analysis.viscosity.value_or(0);
   settings.viscous_above = scene.analysis.highest_frequency;
   settings.large_strain = scene.analysis.large_strain;
   settings.drainage = scene.water.drainage;

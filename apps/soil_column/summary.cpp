@@ -157,7 +157,7 @@ void add_scene(const ColumnSummary &s, const ColumnScene &scene, Summary &summar
   summary["requested_depths"] = scene.output.depths;
   if (shaken(scene))
     {
-      summary["viscosity"] = scene.analysis.viscosity;
+      summary["viscosity"] = scene.analysis.viscosity.value_or(0);
       summary["highest_frequency"] = scene.analysis.highest_frequency;
     }
   summary.row("soil", "{:.4g} m in {} layer{}, {}", Value{"height", scene.height()}, scene.layers.size(),

@@ -22,6 +22,12 @@ double SoilProfile::height() const
   return sum;
 }
 
+bool SoilProfile::permeability_varies() const
+{
+  return std::ranges::any_of(layers,
+                             [](const Layer &layer) { return layer.permeability_law != PermeabilityLaw::constant; });
+}
+
 std::size_t SoilProfile::layer_at(double z) const
 {
   double top = 0;

@@ -7,6 +7,13 @@
 
 namespace isostat
 {
+/// How the permeability follows the volume of the pores: fem/water/permeability.hpp.
+enum class PermeabilityLaw
+{
+  constant,
+  kozeny_carman
+};
+
 /// One layer of soil below the water table.
 struct Layer
 {
@@ -15,10 +22,11 @@ struct Layer
   double density = 2000;   ///< of soil and water together, kg/m3
   double porosity = 0.4;   ///< [-]
   double permeability = 0; ///< hydraulic conductivity k, m/s; 0: no water moves
-  double saturation = 1;   ///< S in situ: volume of water over that of the pores; the rest is air [-]
-  double k0 = 0.5;         ///< sigma'_h / sigma'_v in situ [-]
-  unsigned cells = 0;      ///< elements through its thickness; 0: from cell_size
-  double cell_size = 0;    ///< largest height of an element, m
+  PermeabilityLaw permeability_law = PermeabilityLaw::constant;
+  double saturation = 1; ///< S in situ: volume of water over that of the pores; the rest is air [-]
+  double k0 = 0.5;       ///< sigma'_h / sigma'_v in situ [-]
+  unsigned cells = 0;    ///< elements through its thickness; 0: from cell_size
+  double cell_size = 0;  ///< largest height of an element, m
 
   unsigned n_cells() const; ///< whichever of the two was given; 0 if none was
   bool operator==(const Layer &) const = default;
@@ -90,6 +98,7 @@ struct SoilProfile
   Slope slope = {};
 
   double height() const;                ///< summed from the base up, m
+  bool permeability_varies() const;     ///< of any layer, by PermeabilityLaw
   std::size_t layer_at(double z) const; ///< the upper one on an interface; the nearest outside
   bool is_wet(double z) const { return z < height() - water_table; }
   double hydrostatic_pressure(double z) const; ///< of water below its table, above the atmospheric pressure, Pa

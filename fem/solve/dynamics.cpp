@@ -44,7 +44,7 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
       total_ = stresses_;
     }
   if (settings_.large_strain)
-    deformed_ = Deformation{space_, u_, space_.frequencies(space_)};
+    deformed_ = Deformation{space_, space_, u_, space_.frequencies(space_)};
   const double stable = stable_step();
   time_step_ = settings_.time_step > 0 ? settings_.time_step : settings_.safety * stable;
   if (settings_.time_step == 0 && settings_.multiple > time_step_)
@@ -53,6 +53,8 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
     throw InputError(fmt::format("time step = {:.6g} s; must be <= {:.6g} s, the stable step of the stiffest element. "
                                  "Give a smaller one, or leave it out.",
                                  time_step_, stable));
+  if (settings_.drainage == Drainage::coupled && space_.mesh().soil.permeability_varies())
+    permeable_strains_.assign(space_.n_points(), 0.0);
   prepare_steps();
   if (settings_.lagged_compressibility)
     {
@@ -94,7 +96,7 @@ void Dynamics::prepare_steps()
   if (viscosity_)
     viscosity_->set_time_step(time_step_);
   if (settings_.drainage == Drainage::coupled)
-    make_pressure_system(space_);
+    make_pressure_system();
 }
 
 /// Unknowns of cells below the water table, where an undrained column keeps its volume.
@@ -187,6 +189,8 @@ void Dynamics::for_each_field(Self &self, Visit &&visit)
   visit("lagged_pressure", self.lagged_pressure_);
   if (self.deformed_)
     visit("geometry_found_at", self.deformed_->found_at);
+  if (!self.permeable_strains_.empty())
+    visit("permeable_strain", self.permeable_strains_);
   if (self.viscosity_)
     SkeletonViscosity::for_each_field(*self.viscosity_, visit);
   visit.sum("kinetic", self.energy_.kinetic);
@@ -213,12 +217,12 @@ void Dynamics::restore(const SolverState &state)
   reader.take();
   const double found_anew = time_step_;
   for_each_field(*this, reader);
-  if (time_step_ != found_anew)
+  if (deformed_)
+    find_deformation();
+  if (time_step_ != found_anew || !permeable_strains_.empty() || deformed_)
     prepare_steps();
   if (viscosity_)
     material_.wave_moduli(moduli_); // for the next step
-  if (deformed_)
-    find_deformation();
   step_ = state.step;
 }
 } // namespace isostat

@@ -52,8 +52,9 @@ struct DynamicsEnergy
 ///
 /// sigma' has the viscous stress of SkeletonViscosity in it, if there is one.
 /// v-, v+ at n -+ 1/2; p, p', p'' at n, n-1, n-2. M and C are diagonal, so the only linear system is for the
-/// pressure (PressureSystem), constant and factorised once. The skeleton alone limits dt; water of any stiffness and
-/// permeability does not (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
+/// pressure (PressureSystem), constant and factorised once; where the permeability follows the void ratio, again when
+/// it has changed by 1 % anywhere. The skeleton alone limits dt; water of any stiffness and permeability does not
+/// (roots of the amplification polynomial (9) on or inside the unit circle for omega dt <= 2).
 ///
 /// With large_strain sigma' is Cauchy's stress in the cells as they are: F, G, H, L and S are integrals over the
 /// deformed cells (FiniteElementSpace::deform()), the increments of displacement gradient that the material gets refer
@@ -115,6 +116,7 @@ private:
   template <typename Self, typename Visit>
   static void for_each_field(Self &self, Visit &&visit);
   // dynamics_step.cpp
+  void follow_void_ratio();
   void find_loads();
   void start();
   void find_pressure();
@@ -124,9 +126,9 @@ private:
   void add_lagged_compression();
   void check_lagged_compression() const;
   void check_motion();
-  // large_strain.cpp
+  // dynamics_geometry.cpp
   const CellGeometry &cells() const { return deformed_ ? deformed_->now : space_; }
-  void make_pressure_system(const CellGeometry &at);
+  void make_pressure_system();
   void find_deformation();
   void follow_deformation();
 
@@ -140,7 +142,8 @@ private:
   Vector u_, v_, next_;          ///< next_: v half a step before v_
   Vector p_, p_before_, p_next_; ///< p_next_ is scratch
   std::vector<Stress> stresses_;
-  std::vector<double> lagged_pressure_; ///< at the points, lagged compressibility only
+  std::vector<double> lagged_pressure_;   ///< at the points, lagged compressibility only
+  std::vector<double> permeable_strains_; ///< volume strains of pressure_system_; empty: its permeability is constant
   std::optional<SkeletonViscosity> viscosity_;
   DynamicsEnergy half_way_; ///< of this rank, at time() - dt/2
   DynamicsEnergy energy_;   ///< of this rank at time() - dt
@@ -149,9 +152,9 @@ private:
   /// Large strain: where cells are, and what was found where they were `found_at`.
   struct Deformation
   {
-    CellGeometry now;
-    Vector found_at;                 ///< displacement, m
-    std::vector<double> frequencies; ///< of the cells there; and pressure_system_
+    CellGeometry now, found;
+    Vector found_at;                 ///< displacement of `found`, m
+    std::vector<double> frequencies; ///< of those cells, for which pressure_system_ is, too
   };
   std::optional<Deformation> deformed_;
 

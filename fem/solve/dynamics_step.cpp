@@ -190,6 +190,8 @@ void Dynamics::step()
   find_loads();
   if (step_ == 0)
     start();
+  if (!permeable_strains_.empty())
+    follow_void_ratio();
   if (pressure_system_)
     {
       find_pressure();

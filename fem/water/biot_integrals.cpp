@@ -33,15 +33,6 @@ void scatter_add(const Eigen::VectorXd &local, const unsigned *unknowns, Vector 
 }
 } // namespace
 
-std::vector<PorousLayer> porous_layers(const SoilProfile &soil)
-{
-  const Water &water = soil.water;
-  std::vector<PorousLayer> layers;
-  for (const Layer &layer : soil.layers)
-    layers.push_back({water.mobility(layer.permeability), water.density});
-  return layers;
-}
-
 std::vector<unsigned> held_pressures(const FiniteElementSpace &space, std::size_t n_owned)
 {
   Vector wet = space.pressure_vector(), flowing = wet; // above 0: in a wet cell, in one that is permeable
@@ -80,16 +71,8 @@ std::vector<PoreFluid> pore_fluids(const FiniteElementSpace &space)
   return fluids;
 }
 
-std::vector<double> point_storage(const FiniteElementSpace &space)
-{
-  std::vector<double> storage;
-  for (const PoreFluid &fluid : pore_fluids(space))
-    storage.push_back(fluid.storage(0));
-  return storage;
-}
-
-BiotCell biot_cell(const FiniteElementSpace &space, const CellGeometry &at, const PorousLayer &layer,
-                   std::span<const double> storage, std::size_t cell)
+BiotCell biot_cell(const FiniteElementSpace &space, const CellGeometry &at, const PorousPoints &points,
+                   std::size_t cell)
 {
   const std::size_t n_a = space.n_nodes, n_i = space.pressure_nodes_per_cell(), n_q = space.n_gauss,
                     dim = space.dimension;
@@ -101,31 +84,34 @@ BiotCell biot_cell(const FiniteElementSpace &space, const CellGeometry &at, cons
     for (std::size_t q = 0; q < n_q; ++q)
       {
         const std::size_t point = cell * n_q + q;
-        const double w = at.weight[point], value = space.pressure_shape[q * n_i + i];
+        const double w = at.weight[point], value = space.pressure_shape[q * n_i + i], mobility = points.mobility[point];
         const double *slope = &at.pressure_gradient[(point * n_i + i) * dim];
         for (std::size_t j = 0; j < n_i; ++j)
           {
-            c.s(i, j) += w * storage[point] * value * space.pressure_shape[q * n_i + j];
+            c.s(i, j) += w * points.storage[point] * value * space.pressure_shape[q * n_i + j];
             for (std::size_t d = 0; d < dim; ++d)
-              c.h(i, j) += w * layer.mobility * slope[d] * at.pressure_gradient[(point * n_i + j) * dim + d];
+              c.h(i, j) += w * mobility * slope[d] * at.pressure_gradient[(point * n_i + j) * dim + d];
           }
         for (std::size_t a = 0; a < n_a; ++a)
           for (std::size_t d = 0; d < dim; ++d)
             {
               const std::size_t column = 3 * a + mesh_axes[dim][d];
               c.g(i, column) += w * value * at.gradient[(point * n_a + a) * dim + d];
-              c.l(i, column) += w * layer.mobility * layer.fluid_density * slope[d] * space.shape[q * n_a + a];
+              c.l(i, column) += w * mobility * points.fluid_density * slope[d] * space.shape[q * n_a + a];
             }
       }
   return c;
 }
 
-BiotOperator::BiotOperator(const FiniteElementSpace &space) : space_(space)
+BiotOperator::BiotOperator(const FiniteElementSpace &space) : space_(space) { integrate(porous_points(space)); }
+
+void BiotOperator::follow(const Vector &u) { integrate(porous_points(space_, volume_strains(space_, u))); }
+
+void BiotOperator::integrate(const PorousPoints &points)
 {
-  const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
-  const std::vector<double> storage = point_storage(space);
-  for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
-    cells_.push_back(biot_cell(space, space, layers[space.cell_layer[cell]], storage, cell));
+  cells_.clear();
+  for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)
+    cells_.push_back(biot_cell(space_, space_, points, cell));
 }
 
 void BiotOperator::add_pore_force(const Vector &p, Vector &f) const

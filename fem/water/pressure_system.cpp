@@ -33,7 +33,7 @@ struct BiotEntries
   std::size_t n_pressures = 0, n_displacements = 0; ///< owned by this rank
   MPI_Comm communicator = MPI_COMM_SELF;
 
-  BiotEntries(const FiniteElementSpace &space, const CellGeometry &at, const std::vector<PorousLayer> &layers);
+  BiotEntries(const FiniteElementSpace &space, const CellGeometry &at, const PorousPoints &points);
 
   PetscMatrix coupling(double a, double b) const; ///< a G + b L
   PetscMatrix to_force() const;                   ///< G^T
@@ -41,18 +41,16 @@ struct BiotEntries
   PetscMatrix seepage() const;                    ///< H
 };
 
-BiotEntries::BiotEntries(const FiniteElementSpace &space, const CellGeometry &at,
-                         const std::vector<PorousLayer> &layers)
+BiotEntries::BiotEntries(const FiniteElementSpace &space, const CellGeometry &at, const PorousPoints &points)
     : communicator(space.communicator())
 {
   const Vector u = space.displacement_vector(), p = space.pressure_vector();
   n_displacements = u.locally_owned_size();
   n_pressures = p.locally_owned_size();
   const std::size_t n_u = 3 * space.n_nodes, n_i = space.pressure_nodes_per_cell();
-  const std::vector<double> storage_of_points = point_storage(space);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
-      const BiotCell c = biot_cell(space, at, layers[space.cell_layer[cell]], storage_of_points, cell);
+      const BiotCell c = biot_cell(space, at, points, cell);
       for (std::size_t i = 0; i < n_i; ++i)
         {
           const PetscInt row = p.global_index(space.cell_pressures[cell * n_i + i]);
@@ -104,8 +102,7 @@ PetscMatrix BiotEntries::seepage() const
   return petsc_matrix(communicator, n_pressures, n_pressures, entries);
 }
 
-std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const CellGeometry &at,
-                                 const std::vector<PorousLayer> &layers)
+std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const CellGeometry &at, const PorousPoints &points)
 {
   const std::size_t n_i = space.pressure_nodes_per_cell(), n_q = space.points_per_cell();
   std::array<Vector, 3> flows;
@@ -115,11 +112,10 @@ std::array<Vector, 3> base_flows(const FiniteElementSpace &space, const CellGeom
     {
       if (!space.cell_is_wet[point / n_q])
         continue;
-      const PorousLayer &layer = layers[space.cell_layer[point / n_q]];
       for (std::size_t i = 0; i < n_i; ++i)
         for (unsigned d = 0; d < space.dimension; ++d)
           flows[mesh_axes[space.dimension][d]].local_element(space.cell_pressures[point / n_q * n_i + i]) +=
-              at.weight[point] * layer.mobility * layer.fluid_density *
+              at.weight[point] * points.mobility[point] * points.fluid_density *
               at.pressure_gradient[(point * n_i + i) * space.dimension + d];
     }
   for (Vector &flow : flows)
@@ -149,11 +145,11 @@ PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, double fact
 } // namespace
 
 PressureSystem::PressureSystem(const FiniteElementSpace &space, const CellGeometry &at, double time_step,
-                               const Vector &update)
+                               const Vector &update, std::span<const double> volume_strains)
 {
   const MPI_Comm communicator = space.communicator();
-  const std::vector<PorousLayer> layers = porous_layers(space.mesh().soil);
-  const BiotEntries entries(space, at, layers);
+  const PorousPoints points = porous_points(space, volume_strains);
+  const BiotEntries entries(space, at, points);
   const std::size_t n_p = entries.n_pressures;
   const Vector zero = space.pressure_vector();
   matrices_.reset(new Matrices{.storage = entries.storage(2 * time_step),
@@ -162,7 +158,7 @@ PressureSystem::PressureSystem(const FiniteElementSpace &space, const CellGeomet
                                .behind = entries.coupling(0.5, -1 / time_step),
                                .factor = {},
                                .air = {},
-                               .base_flow = base_flows(space, at, layers),
+                               .base_flow = base_flows(space, at, points),
                                .held = held_pressures(space, n_p),
                                .right_hand_side = zero,
                                .work = zero,

@@ -18,14 +18,17 @@ namespace isostat
 /// p is excess pressure, compression positive, Pa; v in m/s. The matrix is constant: assembled and factorised once by
 /// PETSc, LU of its own on one rank (natural order in a column, which is banded; else nested dissection), MUMPS on
 /// several. A step costs one pair of triangular solves and four products. Biot's coefficient is 1 (rigid grains). Where
-/// air follows Boyle's law, S is not constant: AirPressure.
+/// air follows Boyle's law, S is not constant: AirPressure. Where the permeability follows the void ratio, Dynamics
+/// makes another system from time to time.
 /// tested: tests/fem/water/pressure_system_test.cpp
 class PressureSystem
 {
 public:
   /// @param update  D: v+ per unit force, for each displacement unknown (0 where it is fixed)
-  /// @param at      the cells, those of the space unless they have moved
-  PressureSystem(const FiniteElementSpace &space, const CellGeometry &at, double time_step, const Vector &update);
+  /// @param at      the cells: the space, or where they have moved
+  /// @param volume_strains  of the points, that permeability and storage are of; empty: in situ
+  PressureSystem(const FiniteElementSpace &space, const CellGeometry &at, double time_step, const Vector &update,
+                 std::span<const double> volume_strains = {});
   ~PressureSystem();
 
   /// p from v* and what came before.  @param base_acceleration  constant over the mesh, m/s2

@@ -4,7 +4,7 @@ import signal
 
 import numpy as np
 
-from column_support import ColumnTest, settings
+from column_support import SCENES, ColumnTest, history, settings
 from studies import column_cases as cases
 from studies.column_layers import equivalent_linear
 from studies.small_strain import published
@@ -60,6 +60,17 @@ class Damping(ColumnTest):
                 at, at_exact = (frequency[near][np.argmax(x[near])] for x in (mine, exact))
                 self.assert_close(peak, peak_exact, 0.03, "a damping that ripples by 1.5 %, and waves at the end")
                 self.assert_close(at, at_exact, 0.006, "steps of 0.01 Hz, dispersion")
+
+    def test_resonances_without_a_word_on_viscosity(self):
+        """Mass damping a_M in elastic soil, 1 % at the third mode, 12.5 Hz: |1/cos(kH)|, k = w sqrt(1 - i a_M/w)/V."""
+        self.assert_done(self.run_column(SCENES / "uniform_layer.toml", "-o", "layer", "--quiet", *settings(
+            output__profile_interval="10 s")))
+        frequency = np.arange(1, 15, 0.005)
+        w = 2 * np.pi * frequency
+        exact = np.abs(1 / np.cos(w * np.sqrt(1 - 1j * (np.pi / 2) / w) * HEIGHT / VELOCITY))
+        mine = cases.amplification(history(self.folder / "layer"), frequency)
+        self.assert_close(mine, exact, 0.01, "dispersion in 40 elements, steps in time: 1e-4 of the frequency")
+        self.assertEqual(self.summary_of("layer")["viscosity"], 0)
 
     def test_damping_comes_back_from_a_checkpoint(self):
         scene = self.write("curve.toml", SCENE.format("iwan", 'curve = "darendeli"\nunloading = "mrdf"\n'))

@@ -3,10 +3,10 @@
 and the published example of the program nrattle (tests/reference/nrattle)."""
 import numpy as np
 
-from column_support import ColumnTest
+from column_support import SCENES, ColumnTest, history, settings
 from studies import column_cases as cases
 from studies.column_layers import Layers, equivalent_linear, hyperbola
-from studies.column_masing import Masing
+from studies.column_masing import Masing, ShearBeam
 
 
 class Sand(ColumnTest):
@@ -80,6 +80,56 @@ class Sand(ColumnTest):
         self.assert_below(off[0], 0.006, "dispersion in 40 linear elements")
         self.assert_below(off[1], 0.03, "strains of 3 % of the reference strain")
         self.assertGreater(off[2], 0.2, "one stiffness for all of a strong motion is another soil")
+
+
+class Prenolin(ColumnTest):
+    """Profile P1 of PRENOLIN (Regnier et al. 2016): the scene prenolin_p1."""
+    HEIGHT, DENSITY, VELOCITY, REFERENCE_STRAIN = 20.0, 2000.0, 300.0, 3.65e-4
+    ROCK = {"base__kind": "compliant", "base__density": "2000 kg/m3", "base__shear_velocity": "1000 m/s"}
+
+    def rows_with(self, name, **changes):
+        self.assert_done(self.run_column(SCENES / "prenolin_p1.toml", "-o", name, "--quiet", *settings(**changes)))
+        return history(self.folder / name)
+
+    def test_small_strain(self):
+        """A weak pulse and damping of 1 %: 1/(cos kH + i a sin kH) of constant Q (Kjartansson 1979), a the ratio of
+        impedances, 0 of a rigid base."""
+        frequency = np.arange(1, 14, 0.005)
+        velocity = self.VELOCITY * (1j * frequency) ** (np.arctan(0.02) / np.pi)
+        angle = 2 * np.pi * frequency * self.HEIGHT / velocity
+        weak = {"motion__0__amplitude": "1e-5 m/s2", "layer__0__damping": 0.01, "layer__0__elements": 12,
+                "layer__0__cells": 20, "mesh__degree": 2, "output__history_interval": "2 ms", "output__depths": "[]"}
+        rigid = cases.amplification(self.rows_with("rigid", **weak, analysis__duration="45 s"), frequency)
+        exact = np.abs(1 / np.cos(angle))
+        for mode in (3.8, 11.4):
+            near = np.abs(frequency - mode) < 1
+            self.assert_close(rigid[near].max(), exact[near].max(), 0.01, "a damping that ripples by 1.6 %")
+            at, at_exact = (frequency[near][np.argmax(x[near])] for x in (rigid, exact))
+            self.assert_close(at, at_exact, 0.001, "steps of 0.005 Hz, dispersion")
+        elastic = cases.amplification(self.rows_with("elastic", **weak, **self.ROCK), frequency)
+        exact = np.abs(1 / (np.cos(angle) + 1j * self.DENSITY * velocity / (2000 * 1000) * np.sin(angle)))
+        self.assert_close(elastic, exact, 0.003, "dispersion; the radiation into the rock damps far more than the soil")
+
+    def test_strong_motion(self):
+        """1 m/s2 on a rigid base: strains of 0.043 %, above the reference strain, against the shear beam."""
+        rows = self.rows_with("strong")
+        time, interval = rows["time"], rows["time"][1]
+        modulus = self.DENSITY * self.VELOCITY**2
+
+        def soil(depth):
+            return np.full(len(depth), modulus), np.full(len(depth), modulus * self.REFERENCE_STRAIN)
+        at, surface, strain, _ = ShearBeam(self.HEIGHT, 80, self.DENSITY, soil).run(
+            time, rows["input_ax"], 2e-4, (5.125, 15.125, 19.875))
+        self.assertGreater(np.abs(strain).max(), 1.1 * self.REFERENCE_STRAIN)
+        numerics = "a backbone in 128 pieces; waves as short as a cell, which nothing damps, are left out"
+        pairs = [(rows["surface_ax"], surface), *((rows[f"d{k}_gamma_xz"], strain[k]) for k in range(3))]
+        for mine, other in pairs:
+            mine, other = (cases.low_passed(a, interval, 25) for a in (mine, np.interp(time, at, other)))
+            self.assert_close(mine, other, 0.01, numerics)
+        periods = np.geomspace(0.05, 2, 40)
+        mine, other = (cases.response_spectrum(a, interval, periods) for a in (
+            rows["surface_ax"], np.interp(time, at, surface)))
+        self.assert_close(mine, other, 0.005, numerics)
 
 
 class Published(ColumnTest):

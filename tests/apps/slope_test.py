@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""soil_column on a slope with a water table in the soil: what it leaves, on how many ranks and after which restarts."""
+"""soil_column on a slope with a water table, in soil whose permeability varies: what it leaves, on how many ranks and
+after which restarts."""
 import math
 import signal
 
@@ -9,7 +10,8 @@ import numpy as np
 from column_support import ColumnTest, SOIL, settings
 
 SLOPE = SOIL.replace('drainage = "coupled"', 'drainage = "coupled"\ntable = "1 m"\n[slope]\nangle = "5 deg"').replace(
-    'amplitude = "0.1 g"', 'amplitude = "0.2 g"')
+    'amplitude = "0.1 g"', 'amplitude = "0.2 g"').replace(
+    'permeability = "1e-4 m/s"', 'permeability = "1e-4 m/s"\npermeability_law = "kozeny-carman"')
 DISTRIBUTED = settings(mesh__dimension=2, mesh__distributed="true", mesh__width="4 m", mesh__cells_across=2)
 
 

@@ -31,7 +31,19 @@ StaticsSubstep::StaticsSubstep(StaticsProblem &problem, const StaticsState &from
   const bool second_order = flow && ratio > 0 && ratio <= 2.4;
   theta_ = !flow ? 0 : second_order ? duration * (1 + ratio) / (1 + 2 * ratio) : duration;
   last_part_ = second_order ? ratio * ratio / (1 + 2 * ratio) : 0;
+  if (problem.water && problem.space.mesh().soil.permeability_varies())
+    follow_void_ratio(second_order ? ratio : 0);
   restart();
+}
+
+/// (3a), at the end of the step as the increment before it has it: of second order as BDF2.
+void StaticsSubstep::follow_void_ratio(double ratio)
+{
+  Vector u = from_.last_increment.u;
+  u *= ratio;
+  u += from_.now.u;
+  problem_.water->follow(u);
+  problem_.system->forget_tangent();
 }
 
 void StaticsSubstep::restart()

@@ -20,7 +20,7 @@ struct StaticsProblem
   Material &material;
   const StaticsSettings settings;
   const StaticsLoads loads;
-  const std::unique_ptr<const BiotOperator> water; ///< null: no pore water
+  const std::unique_ptr<BiotOperator> water; ///< null: no pore water
   std::unique_ptr<StaticsSystem> system;
 };
 
@@ -58,6 +58,7 @@ public:
   StaticsReport &report;
 
 private:
+  void follow_void_ratio(double ratio);
   void find_residual();
 
   StaticsProblem &problem_;

@@ -168,6 +168,8 @@ void StaticsSystem::set_tangent(std::span<const Stiffness> tangents, double thet
   m.known_tangents.assign(tangents.begin(), tangents.end());
 }
 
+void StaticsSystem::forget_tangent() { matrices_->known_tangents.clear(); }
+
 void StaticsSystem::assemble(std::span<const Stiffness> tangents, double theta)
 {
   Matrices &m = *matrices_;

@@ -13,7 +13,7 @@ namespace isostat
 /// without the second row if there is no pore water. Pressures are scaled by a modulus, so that both rows are of one
 /// size. Assembled by PETSc, factorised by MUMPS (LU: the tangent of a soil need not be symmetric) on any number of
 /// ranks. Held unknowns take given increments. The factor is kept as long as tangent, theta and held unknowns are the
-/// same numbers.
+/// same numbers and the water does not change.
 /// tested: tests/fem/solve/statics_test.cpp
 class StaticsSystem
 {
@@ -26,6 +26,7 @@ public:
   void hold(const std::vector<unsigned> &displacements, const std::vector<unsigned> &pressures);
   /// @throws RunFailure  the tangent is singular: a body that moves freely, or a soil without stiffness
   void set_tangent(std::span<const Stiffness> tangents, double theta);
+  void forget_tangent(); ///< the water has changed
 
   /// Increments of a residual (N; m3), and of the increments that `step` has at held unknowns when called.
   /// @param moved  what the residual loses by the held increments alone

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a column's scene says of air and of the viscosity of its pore fluid, and what of it is refused.
+// What a column's scene says of its pore fluid, air in it and how it flows, and what of it is refused.
 #include "apps/deposit/scene.hpp"
 #include "tests/apps/deposit/scene_texts.hpp"
 #include "tests/support/refusal.hpp"
@@ -44,6 +44,18 @@ TEST(PoreFluidOfAScene, RangesHaveReasons)
   expect_overrides_refused(coupled, {"water.henry=0.2"}, {"must be in [0, 0.1]"});
   expect_overrides_refused(coupled, {"water.atmospheric_pressure=2 kPa"}, {"must be >= 5 kPa because water boils"});
   expect_overrides_refused(coupled, {"water.air=charles"}, {"must be \"constant\" or \"boyle\""});
+}
+
+TEST(PoreFluidOfAScene, PermeabilityThatVariesNeedsWaterThatMoves)
+{
+  const Overrides law = {"layer.0.permeability_law=kozeny-carman"};
+  const ColumnScene scene = parse_column_scene(coupled, "s", law);
+  EXPECT_EQ(scene.layers[0].permeability_law, PermeabilityLaw::kozeny_carman);
+  EXPECT_TRUE(soil_profile(scene).permeability_varies());
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "s"), scene);
+  expect_overrides_refused(coupled, {"layer.0.permeability_law=hazen"}, {"must be \"constant\" or \"kozeny-carman\""});
+  expect_overrides_refused(smallest, law, {"layer.0.permeability_law", "has no effect where no water moves"});
+  expect_overrides_refused(layer + undrained + dynamic, law, {"has no effect where no water moves"});
 }
 
 TEST(PoreFluidOfAScene, AirNeedsAVolumeThatChanges)

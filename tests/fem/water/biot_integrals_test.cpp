@@ -19,6 +19,11 @@ MeshSpec uneven(unsigned degree)
           .degree = degree};
 }
 
+PorousPoints uniform(const FiniteElementSpace &space)
+{
+  return {std::vector<double>(space.n_points(), mobility), std::vector<double>(space.n_points(), storage), density};
+}
+
 /// The coordinate along an axis at the corners of a cell, and as the displacement along it at its nodes.
 struct Coordinate
 {
@@ -44,10 +49,10 @@ template <int dim>
 void integrals_are_exact(unsigned degree)
 {
   const Discretisation<dim> space(uneven(degree), {});
-  const std::vector<double> everywhere(space.n_points(), storage);
+  const PorousPoints everywhere = uniform(space);
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     {
-      const BiotCell c = biot_cell(space, space, {mobility, density}, everywhere, cell);
+      const BiotCell c = biot_cell(space, space, everywhere, cell);
       const Eigen::VectorXd one = Eigen::VectorXd::Ones(space.pressure_nodes_per_cell());
       std::vector<Coordinate> axes;
       double volume = 1;
@@ -87,9 +92,8 @@ TEST(BiotIntegrals, NoWaterMovesAboveTheWaterTable)
   MeshSpec mesh = uneven(1);
   mesh.soil.water_table = 3;
   const Discretisation<1> space(mesh, {});
-  const std::vector<double> everywhere(space.n_points(), storage);
-  const BiotCell wet = biot_cell(space, space, {mobility, density}, everywhere, 0),
-                 dry = biot_cell(space, space, {mobility, density}, everywhere, 1);
+  const PorousPoints everywhere = uniform(space);
+  const BiotCell wet = biot_cell(space, space, everywhere, 0), dry = biot_cell(space, space, everywhere, 1);
   EXPECT_GT(wet.g.norm() * wet.l.norm() * wet.s.norm() * wet.h.norm(), 0);
   EXPECT_EQ(dry.g.norm() + dry.l.norm() + dry.s.norm() + dry.h.norm(), 0);
 }
