@@ -10,8 +10,8 @@ import unittest
 from support import BIN, ROOT
 
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax/MathJax.js")
-PAGES = ("index", "../README", "installation", "first_scene", "guide/stages", "python", "python_api", "scene_reference",
-         "theory", "cpp_api", "results", "gallery", "compared")
+PAGES = ("index", "../README", "installation", "tutorial/first_test", "guide/stages", "python", "python_api",
+         "scene_reference", "theory", "cpp_api", "results", "gallery", "compared")
 
 
 class Site(unittest.TestCase):

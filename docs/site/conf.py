@@ -17,7 +17,7 @@ version = release = re.search(r"project\(\w+ VERSION ([\d.]+)", (ROOT / "CMakeLi
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
 root_doc = "docs/index"
 include_patterns = ["*.md", "docs/*.md", "docs/campaigns/*.md", "docs/guide/*.md", "docs/results/*.md",
-                    "docs/results/paper/*.md", "apps/**.md", "benchmarks/README.md", "studies/README.md",
+                    "docs/results/paper/*.md", "docs/tutorial/*.md", "apps/**.md", "benchmarks/README.md", "studies/README.md",
                     "tests/reference/README.md"]
 exclude_patterns = ["build", "results", ".git", "docs/site", "**/figures"]
 

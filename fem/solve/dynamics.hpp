@@ -116,7 +116,6 @@ private:
   template <typename Self, typename Visit>
   static void for_each_field(Self &self, Visit &&visit);
   // dynamics_step.cpp
-  void follow_void_ratio();
   void find_loads();
   void start();
   void find_pressure();
@@ -129,6 +128,7 @@ private:
   // dynamics_geometry.cpp
   const CellGeometry &cells() const { return deformed_ ? deformed_->now : space_; }
   void make_pressure_system();
+  void follow_void_ratio();
   void find_deformation();
   void follow_deformation();
 
