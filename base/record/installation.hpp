@@ -9,7 +9,8 @@ namespace isostat
 std::string version();
 
 /// The folder with figures and scenes that belongs to the running program: ../share/isostat next to the folder the
-/// program is in. A build tree has links there, so that no path of the source is compiled in.
+/// program is in; of a module of Python share/isostat in the nearest folder above it that has one. A build tree
+/// has links there, so that no path of the source is compiled in.
 /// Tested: tests/apps/micromechanics_test.py, which lets a program draw.
 std::filesystem::path shared_folder();
 

@@ -91,7 +91,7 @@ toml::table parse_override(const std::string &value)
 
 SceneDocument::SceneDocument(const SceneSchema &schema, const std::string &text, const std::string &name,
                              const std::vector<std::string> &overrides)
-    : schema_(schema), name_(name.empty() ? "scene" : name), has_lines_(!name.empty()), root_(parse_toml(text, name))
+    : schema_(schema), name_(name.empty() ? "scene" : name), root_(parse_toml(text, name))
 {
   for (const std::string &override : overrides)
     apply(override);
@@ -116,20 +116,45 @@ void SceneDocument::apply(const std::string &override)
   parent->insert_or_assign(split(path).back(), *parse_override(value).get("value"));
 }
 
+/// The keys that a key excludes.
+std::vector<std::string> SceneDocument::rivals(const std::string &path) const
+{
+  std::vector<std::string> paths;
+  const Key *key = schema_.find_key(schema_.schema_path(path));
+  if (!key || key->group.empty())
+    return paths;
+  const std::string prefix = path.substr(0, path.size() - key->name().size()); // "specimen." or "layer.2."
+  for (const Key &other : schema_.keys)
+    if (other.section() == key->section() && other.group == key->group && other.path != key->path)
+      paths.push_back(prefix + std::string(other.name()));
+  return paths;
+}
+
 /// An override of one of several keys that exclude each other takes the place of the one in the file.
 void SceneDocument::make_room(const std::string &path)
 {
-  const Key *key = schema_.find_key(schema_.schema_path(path));
-  if (!key || key->group.empty())
-    return;
-  const std::string prefix = path.substr(0, path.size() - key->name().size()); // "specimen." or "layer.2."
-  for (const Key &other : schema_.keys)
+  for (const std::string &rival : rivals(path))
+    if (std::find(overridden_.begin(), overridden_.end(), rival) == overridden_.end())
+      erase(rival);
+}
+
+void SceneDocument::complete(const std::string &instead, toml::table &&from)
+{
+  root_.erase(instead);
+  add(root_, std::move(from), "");
+}
+
+void SceneDocument::add(toml::table &own, toml::table &&from, const std::string &prefix)
+{
+  for (auto &&[word, node] : from)
     {
-      if (other.section() != key->section() || other.group != key->group || other.path == key->path)
-        continue;
-      const std::string rival = prefix + std::string(other.name());
-      if (std::find(overridden_.begin(), overridden_.end(), rival) == overridden_.end())
-        erase(rival);
+      const std::string path = prefix + std::string(word.str());
+      const auto is_there = [this](const std::string &rival) { return find(rival) != nullptr; };
+      toml::node *there = own.get(word.str());
+      if (there && there->is_table() && node.is_table())
+        add(*there->as_table(), std::move(*node.as_table()), path + ".");
+      else if (!there && std::ranges::none_of(rivals(path), is_there))
+        own.insert(word.str(), std::move(node)); // moved nodes keep their places, copies do not
     }
 }
 
@@ -216,9 +241,9 @@ std::string SceneDocument::where(std::string_view path) const
       path = path.substr(0, path.rfind('.'));
       node = find(path);
     }
-  if (!has_lines_ || !node || node->source().begin.line == 0)
+  if (!node || !node->source().path || node->source().begin.line == 0)
     return name_;
-  return fmt::format("{}:{}", name_, node->source().begin.line);
+  return fmt::format("{}:{}", *node->source().path, node->source().begin.line);
 }
 
 void SceneDocument::refuse(std::string_view path, std::string_view problem) const

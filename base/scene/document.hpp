@@ -41,18 +41,23 @@ public:
   void repeat(const std::string &array, std::size_t i, const std::string &instead,
               const std::vector<toml::table> &rows);
 
+  /// In the place of a key of the top the table of this name of other text, and everywhere else what that text says and
+  /// this does not: of a table its keys, of keys that exclude each other none. Messages name the place in that text.
+  void complete(const std::string &instead, toml::table &&from);
+
   /// Throws InputError "where: path = value; problem".
   [[noreturn]] void refuse(std::string_view path, std::string_view problem) const;
 
 private:
   void apply(const std::string &override);
   void make_room(const std::string &path);
+  std::vector<std::string> rivals(const std::string &path) const;
+  void add(toml::table &own, toml::table &&from, const std::string &prefix);
   void erase(const std::string &path);
   toml::table *parent_of(const std::string &path);
 
   const SceneSchema &schema_;
   std::string name_;
-  bool has_lines_;
   toml::table root_;
   std::vector<std::string> overridden_; ///< paths given by --set
 };

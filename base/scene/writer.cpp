@@ -4,6 +4,7 @@
 
 #include "base/scene/reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -151,6 +152,13 @@ std::string default_entry(const Key &key)
                      example(key));
 }
 
+/// None of its keys has a default or is needed: a scene may do without the table.
+bool is_dispensable(const SceneSchema &schema, const Section &section)
+{
+  return std::ranges::all_of(
+      schema.keys, [&](const Key &key) { return key.section() != section.name || key.presence == Presence::optional; });
+}
+
 /// Lines ready to be uncommented.
 std::string commented(const std::string &text)
 {
@@ -216,7 +224,7 @@ std::string default_section(const SceneSchema &schema, const Section &section)
       kinds = key.kinds;
       text += commented(default_entry(key));
     }
-  return text;
+  return is_dispensable(schema, section) ? commented(text) : text;
 }
 } // namespace
 
@@ -225,9 +233,10 @@ std::string write_scene(const SceneSchema &schema, StructRef scene)
   std::string text = Source{schema, scene, scene}.keys(nullptr);
   for (const Section &section : schema.sections)
     {
-      if (!section.items)
-        text += "\n" + heading(section) + "\n" + Source{schema, scene, scene}.keys(&section);
-      else
+      const std::string keys = section.items ? "" : Source{schema, scene, scene}.keys(&section);
+      if (!section.items && (!keys.empty() || !is_dispensable(schema, section)))
+        text += "\n" + heading(section) + "\n" + keys;
+      if (section.items)
         for (std::size_t i = 0; i < section.items.count(scene); ++i)
           text += "\n" + heading(section) + "\n" + Source{schema, scene, section.items.at(scene, i)}.keys(&section);
     }

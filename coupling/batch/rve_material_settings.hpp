@@ -14,6 +14,7 @@ namespace isostat
 struct RveMaterialSettings
 {
   std::string library; ///< specimens of the sand, made by isostat library; points may have others
+  std::string sand;    ///< whose name all specimens must bear; empty: any
   std::string cache;   ///< in-situ states, kept for the next start; empty: none are kept
   InSituSettings in_situ;
   MotionSpec motion = controlled_motion();

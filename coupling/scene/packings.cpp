@@ -19,6 +19,11 @@ constexpr Key packings[] = {
    .value = "library.h5",
    .text = "Specimens, made by `isostat library`; counts from the folder of the scene file or else from the working "
            "directory. Needed by soil of grains."},
+  {.path = "sand", .field = member<&RveMaterialSettings::sand>, .presence = Presence::optional,
+   .value = "karlsruhe-fine-sand",
+   .text = "Name of the sand of which all specimens must be: `sand` of the scene from which `isostat library` made them. "
+           "Left out: any. With or without it a warning names layers whose p' in situ is outside of the range of the "
+           "sand that the specimens are of."},
   {.path = "cache", .field = member<&RveMaterialSettings::cache>, .presence = Presence::optional,
    .value = "results/in_situ.h5",
    .text = "File in which packings brought to their stress in situ are kept for the next start; counts from the "

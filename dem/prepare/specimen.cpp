@@ -36,6 +36,11 @@ void describe(const Scene &scene, Specimen &specimen)
       numbers["e_min"] = *spec.e_min;
       numbers["e_max"] = *spec.e_max;
     }
+  if (scene.sand.name.empty())
+    return;
+  specimen.provenance["sand"] = sand_text(scene);
+  for (const std::string &warning : beyond_sand(scene, numbers.at("void_ratio")))
+    warn(warning);
 }
 
 /// e_max - e_min; without them that of an ordinary sand.

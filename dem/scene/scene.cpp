@@ -21,8 +21,9 @@ void forget_default_limits(const SceneDocument &document, SpecimenSpec &specimen
     specimen.e_max.reset();
 }
 
-Scene checked_scene(const SceneDocument &document)
+Scene checked_scene(SceneDocument &document, const std::string &path)
 {
+  take_sand(document, path);
   Scene scene;
   fill_scene(document, scene);
   for (const Key &key : scene_schema().keys)
@@ -56,13 +57,14 @@ SpecimenPlace specimen_place(const std::string &file)
 
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides)
 {
-  return checked_scene(SceneDocument(scene_schema(), text, name, overrides));
+  SceneDocument document(scene_schema(), text, name, overrides);
+  return checked_scene(document, name);
 }
 
 Scene read_scene(const std::string &path, const std::vector<std::string> &overrides)
 {
-  const SceneDocument document(scene_schema(), read_scene_text(path), path, overrides);
-  Scene scene = checked_scene(document);
+  SceneDocument document(scene_schema(), read_scene_text(path), path, overrides);
+  Scene scene = checked_scene(document, path);
   if (const SpecimenPlace place = specimen_place(scene.specimen.file); !place.path.empty())
     scene.specimen.file =
         found_file(document, "specimen.file", path, place.path) + (place.entry.empty() ? "" : "#" + place.entry);

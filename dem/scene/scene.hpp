@@ -2,6 +2,7 @@
 #pragma once
 #include "dem/drive/programme.hpp"
 #include "dem/law/law.hpp"
+#include "dem/scene/sand.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -94,6 +95,7 @@ struct OutputSpec : RecordSpec
 struct Scene
 {
   std::string title;
+  SandSpec sand;
   GradingSpec grading;
   Law contact;
   SpecimenSpec specimen;
@@ -121,8 +123,8 @@ struct Scene
 /// tested: tests/dem/scene/scene_test.cpp, tests/dem/scene/scene_error_test.cpp
 Scene read_scene(const std::string &path, const std::vector<std::string> &overrides = {});
 
-/// The same from text; `name` stands for the file in messages, empty as in SceneDocument. Does not touch the disk:
-/// specimen.file is not searched for, and an output folder left out stays empty.
+/// The same from text; `name` stands for the file in messages, empty as in SceneDocument. Reads no file but that of a
+/// sand: specimen.file is not searched for, and an output folder left out stays empty.
 Scene parse_scene(const std::string &text, const std::string &name, const std::vector<std::string> &overrides = {});
 
 /// The scene as a complete TOML file: every key with its value and unit. parse_scene(to_toml(s)) equals s bit for bit

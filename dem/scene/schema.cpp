@@ -19,6 +19,12 @@ constexpr const char *consolidation_choices[] = {"isotropic", "k0"};
 constexpr const char *snapshot_choices[] = {"none", "reversals", "strain"};
 
 constexpr Section fixed_sections[] = {
+    {.name = "sand",
+     .text =
+         "The sand that the scene is of. In place of this table a scene has `sand = \"NAME\"`, an installed sand "
+         "(`isostat sands`), or `sand = \"my_sand.toml\"`, a file of the user, which counts from the folder of the "
+         "scene. The file has this table, `[grading]`, `[contact]` and `[specimen]`; what the scene says itself goes "
+         "first."},
     {.name = "grading",
      .text = "Grain sizes and the random cloud of non-overlapping spheres the specimen starts from. Grains must be "
              "between 2 um and 300 mm across."},
@@ -260,7 +266,8 @@ struct WholeSchema
   WholeSchema()
   {
     const std::span<const Law> laws = registered_laws();
-    std::vector<KeyRun> runs{title_key, splice<&Scene::grading>("grading", grading_keys), KeyRun(law_key, "contact")};
+    std::vector<KeyRun> runs{title_key, splice<&Scene::sand>("sand", sand_keys()),
+                             splice<&Scene::grading>("grading", grading_keys), KeyRun(law_key, "contact")};
     for (std::size_t i = 0; i < laws.size(); ++i)
       runs.emplace_back(laws[i]->keys(), "contact", laws.size() > 1 ? 1u << i : 0u,
                         [](Scene &s) -> ContactLaw & { return *s.contact.operator->(); });

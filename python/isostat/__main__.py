@@ -30,6 +30,7 @@ VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HT
          "view": "RESULTS [--picture FILE.png]: grains, force chains and mesh to look at and turn, with a slider for time",
          "vtkhdf": "RESULTS: grains, force chains and mesh over time for ParaView, one file each",
          "report": "RESULTS: draw figures and report.html of a results folder again, also during its run"}
+SANDS = {"sands": "[FILE ...]: the sands that scenes can take, with the range and the misfit of each"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
             "void_ratio_limits": "loosest and densest packing of a grading",
@@ -47,7 +48,7 @@ def is_built(name):
 
 
 def help_text():
-    parts = (("many runs", CAMPAIGNS), ("results", VIEWS), ("packings", PACKINGS),
+    parts = (("many runs", CAMPAIGNS), ("results", VIEWS), ("sands", SANDS), ("packings", PACKINGS),
              ("programs, which can also be called without `isostat`; each has --help",
               {name: text for name, text in PROGRAMS.items() if is_built(name)}))
     text = ("Isostat: liquefaction of sand, grain by grain, alone or as the soil of a deposit that is shaken\n\n"
@@ -65,7 +66,7 @@ def view(name, words):
 
 
 def refuse(name):
-    known = [*CAMPAIGNS, *VIEWS, *PACKINGS, *PROGRAMS]
+    known = [*CAMPAIGNS, *VIEWS, *SANDS, *PACKINGS, *PROGRAMS]
     raise _core.InputError(f"{name}: unknown command of isostat. {meant(name, known, 'isostat --help lists them.')}")
 
 
@@ -79,6 +80,8 @@ def main(words=None):
         return importlib.import_module("isostat.convert_packing").main(rest)
     if name in ("view", "vtkhdf"):
         return importlib.import_module(f"isostat.{name}").main(rest)
+    if name in SANDS:
+        return importlib.import_module("isostat.sands").main(rest)
     if name in VIEWS:
         return view(name, rest)
     if name in ("--help", "-h"):

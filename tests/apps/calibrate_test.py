@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import signal
+import tomllib
 
 import numpy as np
 
@@ -51,8 +52,8 @@ LABORATORY = """eps_a[%],eps_v[%],sigma_v[kPa],sigma_r[kPa]
 2,0.3,500,200
 """
 FRICTION = {"key": "contact.friction", "bounds": '["10 deg", "30 deg"]'}
-LEFT = ("trials.csv", "curves.csv", "calibrate.json", "best_scene.toml", "best/fitted.toml", "best/unseen.toml",
-        "plan.toml", "scene.toml")
+LEFT = ("trials.csv", "curves.csv", "calibrate.json", "best_scene.toml", "best_sand.toml", "best/fitted.toml",
+        "best/unseen.toml", "plan.toml", "scene.toml")
 
 
 def plan_text(trials=4, curve="", **parameter):
@@ -118,6 +119,19 @@ class Results(Calibrate):
         self.assertIn("because budget.trials = 4", (self.folder / "out/report.html").read_text(encoding="utf-8"))
         for name in ("best_scene", "best/fitted"):  # ready to run
             self.assert_done(self.run_test(self.folder / f"out/{name}.toml", "--validate"))
+        self.check_sand(found)
+
+    def check_sand(self, found):
+        """A scene of nothing but the sand that was left is the best one, and knows its tests."""
+        checked = self.run_test(self.write("of_sand.toml", 'sand = "out/best_sand.toml"\n'), "--validate")
+        self.assert_done(checked)
+        scene = tomllib.loads(checked.stdout)
+        self.assertEqual(scene["contact"]["friction"], found["parameters"][0]["best"])
+        sand = scene["sand"]
+        self.assertEqual((sand["name"], sand["misfit"], sand["blind_misfit"]), (
+            "best_sand", round(found["misfit_best"], 4), round(found["curves"][1]["best"], 4)))
+        self.assertEqual((sand["tests"], sand["lowest_pressure"]), ("fitted: fitted; not fitted: unseen", "200 kPa"))
+        self.assertLess(sand["lowest_void_ratio"], sand["highest_void_ratio"])
 
     def check_misfit(self, row):
         """The equation of isostat.campaign.calibrate.curve, by numpy, from the runs' histories."""

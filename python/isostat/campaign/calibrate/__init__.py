@@ -12,7 +12,7 @@ Its folder:
      plan.toml  scene.toml  laboratory/NAME.csv   what makes its results: distinguishes this calibration from others
      runs/TRIAL/CURVE_seedN/                      results of a run; next to it .toml (scene), .log, .failed (why)
      specimens/                                   prepared for them
-     trials.csv  curves.csv  calibrate.json  summary.txt  best_scene.toml  best/CURVE.toml  figures/
+     trials.csv  curves.csv  calibrate.json  summary.txt  best_scene.toml  best_sand.toml  best/CURVE.toml  figures/
 
 tested: tests/apps/calibrate_test.py
 """

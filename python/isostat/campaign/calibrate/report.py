@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a calibration leaves.   tested: tests/apps/calibrate_test.py"""
 import json
+import math
 import pathlib
 from typing import Any
 
 from isostat.campaign import command
 from isostat.campaign.calibrate.trials import Outcome, Trials
 from isostat.campaign.folder import write_replacing
+from isostat.campaign.runs import read_summary
+from isostat.scene import toml_text
 
 AT_BOUND = 0.01  # share of the bounds within which a value counts as being at one
 
@@ -99,10 +102,36 @@ class Report:
                 "grains": self.plan.specimens.grains, "seeds": self.plan.specimens.seeds, "parameters": parameters,
                 "curves": curves}
 
+    def sand(self) -> str:
+        """best_sand.toml: a sand for scenes (dem/scene/sand.hpp), prepared as the first fitted curve is."""
+        done = [(curve, best.misfit) for curve, _, best in self.curves if best and not best.failure]
+        first = next(curve for curve in self.plan.curve if not curve.blind)
+        scene = self.scenes.full_test(self.best.values, first).to_dict()
+        grading, contact, specimen = scene["grading"], scene["contact"], scene["specimen"]
+        for table, key in ((grading, "grains"), (grading, "cloud_edge"), (grading, "seed"), (specimen, "pressure"),
+                           (specimen, "cache")):
+            table.pop(key, None)
+        fitted, blind = ([(curve.name, misfit) for curve, misfit in done if curve.blind is which] for which in (False, True))
+        sand = {"source": f"isostat calibrate, {self.plan.title}",
+                "tests": "; ".join(f"{word}: {', '.join(name for name, _ in some) or 'none'}"
+                                   for word, some in (("fitted", fitted), ("not fitted", blind)))}
+        if fitted:
+            pressures = [self.scenes.pressure(curve) / 1e3 for curve, _ in done]
+            void_ratios = [read_summary(self.trials.place(self.best, curve, seed))["void_ratio"] for curve, _ in done
+                           for seed in self.trials.seeds]
+            sand |= {"misfit": round(self.best.misfit, 4), "lowest_pressure": f"{min(pressures):g} kPa",
+                     "highest_pressure": f"{max(pressures):g} kPa", "lowest_void_ratio": round(min(void_ratios), 4),
+                     "highest_void_ratio": round(max(void_ratios), 4),
+                     "largest_strain": round(max(self.scenes.end(curve) for curve, _ in done), 6)}
+        if blind:
+            sand["blind_misfit"] = round(math.sqrt(sum(misfit**2 for _, misfit in blind) / len(blind)), 4)
+        return toml_text({"sand": sand, "grading": grading, "contact": contact, "specimen": specimen})
+
     def leave(self, folder: pathlib.Path, figures: bool) -> None:
-        """Leaves curves.csv, calibrate.json, best_scene.toml, best/CURVE.toml, summary.txt and figures."""
+        """Leaves curves.csv, calibrate.json, best_scene.toml, best_sand.toml, best/CURVE.toml, summary.txt and figures."""
         (folder / "best").mkdir(exist_ok=True)
         write_replacing(folder / "best_scene.toml", self.scenes.full_scene(self.best.values).text)
+        write_replacing(folder / "best_sand.toml", self.sand())
         for curve in self.plan.curve:
             write_replacing(folder / "best" / f"{curve.name}.toml", self.scenes.full_test(self.best.values, curve).text)
         write_replacing(folder / "curves.csv", self.curves_csv())

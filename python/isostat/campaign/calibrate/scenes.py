@@ -181,13 +181,14 @@ class SceneMaker:
             keys |= {f"specimen.{name}": vars(curve)[name] for name in DENSITIES if vars(curve)[name] is not None}
         return keys
 
+    def end(self, curve: Any) -> float:
+        """Of its stage: a logarithmic strain."""
+        return curve.strain_end if curve.strains != "linear" else abs(math.log1p(-direction(curve) * curve.strain_end))
+
     def test(self, keys: dict[str, Any], curve: Any, title: str, output: dict[str, Any], **specimen: str) -> Scene:
         scene = Scene(self.text, set=keys).to_dict()
-        end = curve.strain_end
-        if curve.strains == "linear":
-            end = abs(math.log1p(-direction(curve) * end))  # stages end at logarithmic strains
         kind = "drained" if curve.test == "drained" else "undrained-monotonic"
-        return Scene(scene | {"title": title, "stage": [{"kind": kind, "direction": curve.direction, "strain": end}],
+        return Scene(scene | {"title": title, "stage": [{"kind": kind, "direction": curve.direction, "strain": self.end(curve)}],
                               "output": scene["output"] | output, "specimen": scene["specimen"] | specimen})
 
     def trial(self, values: list[float], curve: Any, seed: int) -> Scene:

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""isostat sands: what the files of sands say of themselves (dem/scene/sand.hpp).   tested: tests/apps/sands_test.py"""
+import pathlib
+
+from isostat import _core
+from isostat.campaign import command
+from isostat.scene import Scene
+
+
+def described(file: pathlib.Path) -> str:
+    """Range, misfits and origin of a sand in a few lines.   Raises InputError"""
+    sand = Scene({"sand": str(file.absolute()), "specimen": {"preparation_friction": "10 deg"}}).to_dict()["sand"]
+
+    def span(low, high):
+        return f"{sand.get(low, 'any')} to {sand.get(high, 'any')}"
+
+    return (f"{sand['name']}\n"
+            f"  misfit           fitted {sand.get('misfit', 'unknown')}, not fitted {sand.get('blind_misfit', 'unknown')}\n"
+            f"  p0'              {span('lowest_pressure', 'highest_pressure')}\n"
+            f"  void ratio       {span('lowest_void_ratio', 'highest_void_ratio')}\n"
+            f"  axial strain     to {sand.get('largest_strain', 'any')}\n"
+            f"  tests            {sand.get('tests', 'unknown')}\n"
+            f"  source           {sand.get('source', 'unknown')}\n"
+            f"  file             {file}\n")
+
+
+def list_sands(files: list[pathlib.Path]) -> None:
+    folder = command.SCENES / "scenes/sands"
+    files = files or sorted(folder.glob("*.toml"))
+    if not files:
+        raise _core.InputError(f"{folder}: there are no sands in this installation. Give a file: isostat sands my_sand.toml.")
+    print("\n".join(described(file) for file in files), end="")
+
+
+def main(words: list[str]) -> int:
+    line = command.line_of("sands", "The sands that scenes can take (sand = \"NAME\"), with the range in which each was compared "
+                           "with tests and its misfits")
+    line.add_argument("files", metavar="FILE", nargs="*", type=pathlib.Path, help="sands of your own (default: the installed)")
+    options = line.parse_args(words)
+    return command.run(lambda: list_sands(options.files))
