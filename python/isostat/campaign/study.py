@@ -29,6 +29,8 @@ import os
 import pathlib
 import subprocess
 import sys
+import tomllib
+from collections.abc import Iterator
 from typing import Any
 
 from isostat import _core
@@ -149,25 +151,44 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
                                f"{failed[0].reason}. The others are kept, the same command tries again.")
 
 
-def fingerprint(name: str, study: Any) -> str:
-    """SHA-256 of what a whole study runs: its scenes with every default. Of those that need something prepared it is
-    the module that makes them, and the defaults of all programs."""
+def settings_of(scene: str) -> list[tuple[str, str]]:
+    """(key, value) of a scene's text, in its order; entries of lists of tables have the key of the list."""
+    def leaves(key: str, value: Any) -> Iterator[tuple[str, str]]:
+        if isinstance(value, dict):
+            for name, inner in value.items():
+                yield from leaves(f"{key}.{name}" if key else name, inner)
+        elif isinstance(value, list) and any(isinstance(entry, dict) for entry in value):
+            for entry in value:
+                yield from leaves(key, entry)
+        else:
+            yield key, repr(value)
+    return list(leaves("", tomllib.loads(scene)))
+
+
+def fingerprint(name: str, study: Any, known: str | None = None) -> dict[str, str]:
+    """`scenes`: SHA-256 of what a whole study runs: its scenes with every default. Of those that need something prepared
+    it is the module that makes them, and the defaults of all programs. `keys`: those of these scenes. Only `known` keys
+    count, if they are given: one that is newer than a page is off by default, and changes nothing in it."""
     options = parse([], name, study)
     options.output = pathlib.Path("/nowhere")  # scenes name files in it
-    texts = set()
+    scenes, modules = set(), set()
     for planned in study.runs(options):
         try:
             run = as_run(options.output, planned)
-            texts.add(run.text)
             is_scene = not isinstance(run, FunctionRun)
+            (scenes if is_scene else modules).add(run.text)
         except _core.InputError:
-            texts.add(repr(planned))
+            modules.add(repr(planned))
             is_scene = False
         if not is_scene:
             module = sys.modules[type(planned).__module__]
-            texts |= {pathlib.Path(str(module.__file__)).read_text(encoding="utf-8"), *default_scenes()}
-    text = "\n".join(sorted(texts)).replace(str(studies_folder().parent), "")
-    return hashlib.sha256(text.encode()).hexdigest()
+            modules.add(pathlib.Path(str(module.__file__)).read_text(encoding="utf-8"))
+            scenes |= set(default_scenes())
+    settings = [settings_of(scene) for scene in scenes]
+    keys = set(known.split()) if known is not None else {key for of_scene in settings for key, _ in of_scene}
+    modules |= {"\n".join(f"{key} = {value}" for key, value in of_scene if key in keys) for of_scene in settings}
+    text = "\n".join(sorted(modules)).replace(str(studies_folder().parent), "")
+    return {"scenes": hashlib.sha256(text.encode()).hexdigest(), "keys": " ".join(sorted(keys))}
 
 
 @functools.cache
@@ -181,7 +202,7 @@ def stamp(name: str, study: Any) -> None:
     """Notes by which program, and from what scenes, a page was made: tests/studies/stamps_test.py finds it stale."""
     path = studies_folder() / "stamps.json"
     stamps = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    stamps[name] = {"revision": _core.__version__, "scenes": fingerprint(name, study)}
+    stamps[name] = {"revision": _core.__version__, **fingerprint(name, study)}
     write_replacing(path, json.dumps(dict(sorted(stamps.items())), indent=1) + "\n")
 
 
