@@ -192,6 +192,7 @@ struct ColumnAnalysis
   double highest_frequency = 25;        ///< of interest: what is faster may be damped, Hz
   double first_time = 0, last_time = 0; ///< consolidation
   unsigned steps = 50;
+  std::string petsc; ///< options of the linear solvers; empty: direct
 
   /// Ends of the time steps of a consolidation, rising geometrically from first_time to last_time.
   std::vector<double> times() const;

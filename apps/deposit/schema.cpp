@@ -278,6 +278,10 @@ constexpr Key analysis_keys[] = {
            "frequency f by the fraction pi f beta f^2 / (f^2 + f_c^2) of critical (0.04 % at 10 Hz, 1.5 % at 58 Hz). "
            "Lowers the stable time step dt to sqrt(beta^2 + dt^2) - beta: by 10 % where it is 1 ms, by 59 % where it "
            "is as small as beta. 0 ms: none, and layers and elements ring on (docs/results/column_dissipation.md)."},
+  {.path = "petsc", .field = member<&ColumnAnalysis::petsc>, .presence = Presence::optional,
+   .value = "-statics_ksp_type cg -statics_pc_type gamg",
+   .text = "Options of PETSc for the linear systems; left out: direct solution, the same bits for any number of ranks. "
+           "docs/columns.md."},
   {.path = "first_time", .field = member<&ColumnAnalysis::first_time>, .unit = unit::s, .presence = Presence::required,
    .value = "10 s", .range = positive, .kinds = consolidation,
    .text = "End of the first time step after loading; later ones grow geometrically. Elements where water drains are "

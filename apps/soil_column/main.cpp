@@ -72,6 +72,8 @@ constexpr SceneProgram soil_column{
                     "not depend on it",
     .manual_page = "docs/column_scene_reference.md",
     .mesh_check = "dynamic: run with half the elements, too, and state what differs",
+    .petsc = "options of PETSc for the linear systems, e.g. \"-statics_ksp_type cg -statics_pc_type gamg\"; short for "
+             "--set analysis.petsc=",
     .defaults = default_column_scene,
     .manual = column_scene_manual,
     .resolved = validated,

@@ -92,7 +92,7 @@ void Dynamics::prepare_steps()
   if (viscosity_)
     viscosity_->set_time_step(time_step_);
   if (settings_.drainage == Drainage::coupled)
-    pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_);
+    pressure_system_ = std::make_unique<PressureSystem>(space_, time_step_, update_, settings_.petsc);
 }
 
 /// Unknowns of cells below the water table, where an undrained column keeps its volume.
@@ -152,6 +152,8 @@ std::vector<double> Dynamics::point_pressure() const
     }
   return pressure;
 }
+
+LinearEffort Dynamics::linear_effort() const { return pressure_system_ ? pressure_system_->effort() : LinearEffort{}; }
 
 Vector Dynamics::acceleration() const
 {
