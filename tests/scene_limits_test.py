@@ -6,7 +6,7 @@ import unittest
 from support import ROOT
 
 SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.cpp", "apps/deposit/plate.cpp",
-           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp",
+           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/deposit/mesh_file.cpp",
            "apps/deposit/biaxial.cpp", "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp",
            "fem/material/mohr_coulomb_scene.cpp", "fem/solve/newton_scene.cpp")
 # The key of a refusal: "mesh.degree", prefix + ".density", fmt::format("stage.{}.friction", i), key("lot"), and the
@@ -24,6 +24,7 @@ STATED = {
     "column_scene": {
         "mesh.degree": '2 where drainage is "coupled"', "mesh.dimension": "1: a column",
         "mesh.distributed": "Of dimension 2 or 3", "mesh.points": "at least the degree", "mesh.sides": "dimension 2",
+        "mesh.file": "in dimension 2", "mesh.width": "that of `file`", "layer.thickness": "left out with `mesh.file`",
         "mesh.ground_x": "on boundaries between elements", "mesh.ground_z": "the highest being that of all layers",
         "water.drainage": "a column only", "water.lagged_compressibility": "Undrained only",
         "water.henry": "Above 0 only where the volume may change", "water.air": "boyle needs air",

@@ -2,6 +2,7 @@
 // Rules that bind several keys of a column's scene.
 #include "apps/deposit/box.hpp"
 #include "apps/deposit/default_mesh.hpp"
+#include "apps/deposit/mesh_file.hpp"
 #include "apps/deposit/slope.hpp"
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
@@ -276,6 +277,7 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
 {
   check_groups(document, scene);
   complete(document, scene);
+  check_mesh_file(document, scene);
   find_in_situ_states(scene);
   check_mesh(document, scene);
   check_box(document, scene);

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,14 @@
 namespace isostat
 {
 class SceneDocument;
+
+/// What a file of the scene says: scenes that name it are equal.
+template <typename T>
+struct FromFile : std::shared_ptr<T>
+{
+  FromFile(std::shared_ptr<T> content = nullptr) : std::shared_ptr<T>(std::move(content)) {}
+  bool operator==(const FromFile &) const { return true; }
+};
 
 struct ColumnMesh
 {
@@ -34,6 +43,8 @@ struct ColumnMesh
   unsigned points = 0;       ///< Gauss points of an element along each axis; 0: those of MeshSpec
   Sides sides = Sides::tied;
   std::vector<double> ground_x, ground_z; ///< points of a surface that is not level, m; empty: level
+  std::string file;                       ///< of Gmsh, in place of rectangles; empty: none
+  FromFile<const GivenMesh> given;        ///< what it says, null without one
   bool distributed = false;               ///< one mesh over all ranks instead of a copy on each
 
   bool is_boundary(double x) const; ///< whether elements meet there

@@ -80,7 +80,7 @@ constexpr Key mesh_keys[] = {
    .reason = "because elements are linear or quadratic",
    .text = "Degree of the displacement in an element; the pore pressure has degree 1. 2 where drainage is \"coupled\"."},
   {.path = "width", .field = member<&ColumnMesh::width>, .unit = unit::m, .value = "1 m", .range = positive,
-   .text = "Extent of a strip or block along x, of a block along y too."},
+   .text = "Extent of a strip or block along x, of a block along y too; that of `file`."},
   {.path = "cells_across", .field = member<&ColumnMesh::cells_across>, .value = "1", .range = counts,
    .reason = one_or_more, .text = "Elements over the width."},
   {.path = "distributed", .field = member<&ColumnMesh::distributed>, .value = "false",
@@ -121,7 +121,7 @@ constexpr Key layer_keys[] = {
   {.path = "thickness", .field = member_of<ColumnLayer, &ColumnLayer::thickness>, .unit = unit::m,
    .presence = Presence::required, .value = "5 m", .range = {1e-3, 1e5},
    .reason = "because a layer without height has no cells, and the crust of the Earth is not as thick",
-   .text = "Thickness of the layer."},
+   .text = "Thickness of the layer; left out with `mesh.file`, whose cells it has: the mean."},
   {.path = "table", .field = member<&ColumnLayer::table>, .presence = Presence::optional, .value = "profile.csv",
    .kinds = formula,
    .text = "A CSV file in place of thickness, shear_velocity and density: its rows, from the surface down, become "

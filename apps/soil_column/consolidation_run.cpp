@@ -42,7 +42,8 @@ double final_settlement(const ColumnRequest &request, const FiniteElementSpace &
 class ConsolidationRun : public StaticsRun
 {
 public:
-  explicit ConsolidationRun(const ColumnRequest &request) : StaticsRun(request, settings_of(request.scene.load, true, request.scene.analysis.petsc))
+  explicit ConsolidationRun(const ColumnRequest &request)
+      : StaticsRun(request, settings_of(request.scene.load, true, request.scene.analysis.petsc))
   {
     if (resumed_)
       immediate_settlement_ = resumed_->number("immediate_settlement");

@@ -52,6 +52,9 @@ void run_scene(const SceneOptions &options)
     return tell_of_finished(request.folder, figures_of, !options.no_figures);
   if (options.check_mesh && request.scene.analysis.kind != AnalysisKind::dynamic)
     throw InputError("--check-mesh belongs to a dynamic analysis. Leave it out.");
+  if (options.check_mesh && request.scene.mesh.given)
+    throw InputError(
+        "--check-mesh cannot halve the elements of mesh.file. Leave it out, and compare with a coarser one.");
   RunResult result = run_column(request);
   if (options.check_mesh)
     check_mesh(request, result);

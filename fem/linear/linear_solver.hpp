@@ -19,9 +19,9 @@ struct DirectSolver
 };
 
 /// Solver of a linear system: PETSc's KSP, which reads the options of its prefix ("-water_ksp_type gmres -water_pc_type
-/// hypre"); without any a direct solution by LU, whose factor is applied without a detour. Iterations end at 1e-10 of the
-/// right-hand side unless the options say otherwise. No other solver of the process sees the options. A matrix with other values must have the pattern of the
-/// first one.   tested: tests/fem/solve/statics_ranks_test.cpp
+/// hypre"); without any a direct solution by LU, whose factor is applied without a detour. Iterations end at 1e-10 of
+/// the right-hand side unless the options say otherwise. No other solver of the process sees the options. A matrix with
+/// other values must have the pattern of the first one.   tested: tests/fem/solve/statics_ranks_test.cpp
 class LinearSolver
 {
 public:

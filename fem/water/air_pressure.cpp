@@ -26,8 +26,8 @@ double largest(const Vector &v, const FiniteElementSpace &space)
 }
 } // namespace
 
-AirPressure::AirPressure(const FiniteElementSpace &space, double time_step, PetscMatrix linear,
-                         LinearSolver &solver, const std::vector<unsigned> &held)
+AirPressure::AirPressure(const FiniteElementSpace &space, double time_step, PetscMatrix linear, LinearSolver &solver,
+                         const std::vector<unsigned> &held)
     : space_(space), two_steps_(2 * time_step), fluids_(pore_fluids(space)), linear_(std::move(linear)),
       solver_(solver), held_(space.pressure_vector()), residual_(held_), change_(held_),
       of_p_(space.communicator(), held_.locally_owned_size()),

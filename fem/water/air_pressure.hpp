@@ -34,7 +34,7 @@ private:
   double two_steps_;
   std::vector<PoreFluid> fluids_; ///< of each point
   PetscMatrix linear_, tangent_;
-  LinearSolver &solver_; ///< of the tangent
+  LinearSolver &solver_;       ///< of the tangent
   Vector held_;                ///< 1 at held unknowns, also those of other ranks
   std::vector<double> before_; ///< 4 Theta(p') - Theta(p'') at the points
   Vector residual_, change_;

@@ -223,8 +223,8 @@ void StaticsSystem::factorise()
     }
   catch (const RunFailure &failure)
     {
-      throw RunFailure(fmt::format("the tangent is singular: a part moves freely, or a soil has no stiffness ({})",
-                                   failure.what()));
+      throw RunFailure(
+          fmt::format("the tangent is singular: a part moves freely, or a soil has no stiffness ({})", failure.what()));
     }
 }
 

@@ -15,8 +15,8 @@ namespace isostat
 ///
 /// without the second row if there is no pore water. Pressures are scaled by a modulus, so that both rows are of one
 /// size. Assembled by PETSc, factorised by MUMPS (LU: the tangent of a soil need not be symmetric) on any number of
-/// ranks unless options that begin with -statics_ say otherwise (LinearSolver). Held unknowns take given increments. The factor is kept as long as tangent, theta and held unknowns are the
-/// same numbers.
+/// ranks unless options that begin with -statics_ say otherwise (LinearSolver). Held unknowns take given increments.
+/// The factor is kept as long as tangent, theta and held unknowns are the same numbers.
 /// tested: tests/fem/solve/statics_test.cpp
 class StaticsSystem
 {
