@@ -6,7 +6,7 @@ import unittest
 from support import ROOT
 
 SOURCES = ("dem/scene/checks.cpp", "apps/deposit/checks.cpp", "apps/deposit/box.cpp", "apps/deposit/plate.cpp",
-           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp",
+           "apps/deposit/slope.cpp", "apps/deposit/layer_tables.cpp", "apps/deposit/mesh_file.cpp",
            "apps/deposit/biaxial.cpp", "coupling/scene/packings.cpp", "fem/material/iwan_scene.cpp",
            "fem/material/mohr_coulomb_scene.cpp", "fem/material/umat_scene.cpp", "fem/solve/newton_scene.cpp")
 # The key of a refusal: "mesh.degree", prefix + ".density", fmt::format("stage.{}.friction", i), key("lot"), and the
@@ -24,6 +24,7 @@ STATED = {
     "column_scene": {
         "mesh.degree": '2 where drainage is "coupled"', "mesh.dimension": "1: a column",
         "mesh.distributed": "Of dimension 2 or 3", "mesh.points": "at least the degree", "mesh.sides": "dimension 2",
+        "mesh.file": "in dimension 2", "mesh.width": "that of `file`", "layer.thickness": "left out with `mesh.file`",
         "mesh.ground_x": "on boundaries between elements", "mesh.ground_z": "the highest being that of all layers",
         "water.drainage": "a column only", "water.lagged_compressibility": "Undrained only",
         "water.henry": "Above 0 only where the volume may change", "water.air": "boyle needs air",
@@ -47,7 +48,8 @@ STATED = {
         "load.kind": "", "load.surcharge_from": "on a boundary between elements",
         "load.surcharge_to": "Between `surcharge_from` and the width", "grains.library": "Needed by soil of grains",
         "grains.path_depths": "Within the soil", "grains.snapshot_depths": "Within the soil",
-        "analysis.kind": "A consolidation needs", "analysis.last_time": "After `first_time`",
+        "analysis.kind": "A consolidation needs", "analysis.petsc": "for the linear systems",
+        "analysis.last_time": "After `first_time`",
         "analysis.duration": "At most 1e15 time steps", "analysis.from": "on a boundary between elements",
         "analysis.to": "likewise", "analysis.displacement": "less than the extent of the soil",
         "analysis.axial_strain": "not 0",

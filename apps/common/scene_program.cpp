@@ -31,6 +31,9 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
     }
   if (program.mesh_check)
     line.add_flag("--check-mesh", o.check_mesh, program.mesh_check);
+  if (program.petsc)
+    line.add_option_function<std::string>(
+        "--petsc", [&o](const std::string &options) { o.set.push_back("analysis.petsc=" + options); }, program.petsc);
   line.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
   line.add_flag("--no-figures", o.no_figures, "make no figures and no report at the end");
   line.add_option("-t,--threads", o.threads, program.threads_text)->check(CLI::Range(0, 1024));

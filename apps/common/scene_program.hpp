@@ -13,7 +13,7 @@ namespace isostat
 struct SceneOptions
 {
   std::string scene, output, command_line;
-  std::vector<std::string> set;
+  std::vector<std::string> set; ///< with that of --petsc
   bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
        no_figures = false, check_mesh = false;
   int threads = 1;
@@ -44,6 +44,7 @@ struct SceneProgram
   /// and no --resume.
   const char *scene_text, *set_example, *threads_text, *manual_page = nullptr;
   const char *mesh_check = nullptr; ///< what --help says of --check-mesh; null: no such option
+  const char *petsc = nullptr;      ///< likewise of --petsc, short for --set analysis.petsc=
   int threads = 1;                  ///< default
   std::string (*defaults)();
   std::string (*manual)() = nullptr;

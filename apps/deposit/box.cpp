@@ -26,6 +26,10 @@ constexpr Key in_mesh[] = {
    .text = "tied: opposite points of the sides move as one, as in ground without end; walls: a box (dimension 2) "
            "whose smooth walls move with its rigid base. Its soil first settles into equilibrium from K0 stresses: "
            "docs/theory_column.md, section 9."},
+  {.path = "file", .field = member<&ColumnMesh::file>, .presence = Presence::optional, .value = "slope.msh",
+   .text = "A mesh of Gmsh (text, format 2.2 or 4.1) of quadrilaterals of any shape, in dimension 2 and not of a biaxial "
+           "block, in place of width, cells_across, and thickness and cells of the layers: docs/column.md. The path is "
+           "like that of `motion.file`."},
   {.path = "ground_x", .field = member<&ColumnMesh::ground_x>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
    .text = "x of the points of an uneven surface, rising, on boundaries between elements; straight lines connect "

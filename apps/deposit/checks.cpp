@@ -2,6 +2,7 @@
 // Rules that bind several keys of a column's scene.
 #include "apps/deposit/box.hpp"
 #include "apps/deposit/default_mesh.hpp"
+#include "apps/deposit/mesh_file.hpp"
 #include "apps/deposit/slope.hpp"
 #include "base/scene/reader.hpp"
 #include "coupling/scene/packings.hpp"
@@ -10,8 +11,12 @@
 #include "fem/solve/newton_scene.hpp"
 #include "fem/water/pore_fluid.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sstream>
 
 namespace isostat
 {
@@ -225,6 +230,27 @@ void check_analysis(const SceneDocument &document, const ColumnScene &scene)
                                                       number_text(scene.analysis.first_time)));
 }
 
+/// Options are those of the linear systems that the run has.
+void check_petsc(const SceneDocument &document, const ColumnScene &scene)
+{
+  const bool shaken = scene.analysis.kind == AnalysisKind::dynamic;
+  std::vector<std::string_view> prefixes;
+  if (!shaken || scene.mesh.sides == Sides::walls)
+    prefixes.push_back("-statics_");
+  if (shaken && scene.water.drainage == Drainage::coupled)
+    prefixes.push_back("-water_");
+  std::istringstream words(scene.analysis.petsc);
+  bool follows = false; // a value, which may be a negative number
+  for (std::string word; words >> word; follows = true)
+    if (!follows || (word[0] == '-' && word.size() > 1 && !std::isdigit(static_cast<unsigned char>(word[1]))))
+      if (std::ranges::none_of(prefixes, [&](std::string_view prefix) { return word.starts_with(prefix); }))
+        document.refuse("analysis.petsc",
+                        prefixes.empty()
+                            ? "has no effect without a linear system. Remove it."
+                            : fmt::format("has the word {}, but options begin with {} in this analysis. Correct it.",
+                                          word, fmt::join(prefixes, " or ")));
+}
+
 void check_depths(const SceneDocument &document, const ColumnScene &scene, const std::string &key,
                   const std::vector<double> &depths)
 {
@@ -268,6 +294,7 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
 {
   check_groups(document, scene);
   complete(document, scene);
+  check_mesh_file(document, scene);
   find_in_situ_states(scene);
   check_mesh(document, scene);
   check_box(document, scene);
@@ -281,6 +308,7 @@ void check_column(const SceneDocument &document, ColumnScene &scene)
   check_motions(document, scene);
   check_grains(document, scene);
   check_analysis(document, scene);
+  check_petsc(document, scene);
   check_output(document, scene);
 }
 } // namespace isostat

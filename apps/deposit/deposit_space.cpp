@@ -53,7 +53,7 @@ Supports supports_of(const ColumnScene &scene)
 MeshSpec cut_mesh(const ColumnScene &scene, const UserMaterials &user)
 {
   MeshSpec mesh = mesh_spec(scene);
-  if (scene.analysis.kind != AnalysisKind::consolidation)
+  if (scene.analysis.kind != AnalysisKind::consolidation || mesh.given)
     return mesh;
   std::vector<double> moduli;
   double top = mesh.soil.height();

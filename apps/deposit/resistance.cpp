@@ -18,7 +18,10 @@ Stress middle_stress(const ColumnScene &scene, std::size_t layer)
   for (std::size_t k = 0; k < layer; ++k)
     z -= soil.layers[k].thickness;
   const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0; // as in_situ_stress()
-  const double vertical = soil.vertical_effective_stress(z, surcharge), k0 = soil.layers[layer].k0;
+  const double k0 = soil.layers[layer].k0,
+               vertical = scene.mesh.given ? surcharge + mesh_spec(scene).vertical_effective_stress(
+                                                             scene.mesh.given->middle(static_cast<unsigned>(layer)))
+                                           : soil.vertical_effective_stress(z, surcharge);
   return {-k0 * vertical, -k0 * vertical, -vertical, 0, 0, 0};
 }
 

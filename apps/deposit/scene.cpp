@@ -3,6 +3,7 @@
 
 #include "apps/deposit/default_mesh.hpp"
 #include "apps/deposit/layer_tables.hpp"
+#include "apps/deposit/mesh_file.hpp"
 #include "apps/deposit/resistance.hpp"
 #include "base/error.hpp"
 #include "base/scene/reader.hpp"
@@ -19,10 +20,17 @@ namespace isostat
 {
 namespace
 {
-ColumnScene checked_scene(const SceneDocument &document)
+ColumnScene checked_scene(SceneDocument &document, const std::string &path)
 {
+  expand_layer_tables(document, path);
+  std::string file;
+  std::shared_ptr<const GivenMesh> given = expand_mesh_file(document, path, file);
   ColumnScene scene;
   fill_scene(document, scene);
+  scene.mesh.file = file;
+  if (given && !document.find("mesh.width"))
+    scene.mesh.width = given->width();
+  scene.mesh.given = {std::move(given)};
   check_column(document, scene);
   return scene;
 }
@@ -142,6 +150,8 @@ double ColumnLayer::default_k0() const
 
 bool ColumnMesh::is_boundary(double x) const
 {
+  if (given)
+    return given->is_boundary(x);
   const double cells = x / width * cells_across;
   return std::abs(cells - std::round(cells)) < 1e-6;
 }
@@ -216,13 +226,16 @@ void find_in_situ_states(ColumnScene &scene)
       ColumnLayer &layer = scene.layers[k];
       const Stress stress = middle_stress(scene, k);
       layer.in_situ_pressure = -(stress[0] + stress[1] + stress[2]) / 3;
-      layer.in_situ_depth = top + layer.thickness / 2;
+      layer.in_situ_depth =
+          scene.mesh.given ? mesh_spec(scene).depth(scene.mesh.given->middle(k)) : top + layer.thickness / 2;
       top += layer.thickness;
     }
 }
 
 GroundLine ground_line(const ColumnMesh &mesh)
 {
+  if (mesh.given)
+    return mesh.given->ground;
   GroundLine line;
   for (std::size_t k = 0; k < mesh.ground_x.size(); ++k)
     line.points.push_back({mesh.ground_x[k], mesh.ground_z[k]});
@@ -237,6 +250,7 @@ MeshSpec mesh_spec(const ColumnScene &scene)
   mesh.degree = scene.mesh.degree;
   mesh.points_per_direction = scene.mesh.points;
   mesh.ground = ground_line(scene.mesh);
+  mesh.given = scene.mesh.given;
   mesh.line[0] = scene.output.x.value_or(scene.mesh.sides == Sides::walls ? scene.mesh.width / 2 : 0);
   if (scene.analysis.kind == AnalysisKind::plate)
     mesh.patches = {plate_patch(scene)};
@@ -267,8 +281,7 @@ ColumnScene parse_column_scene(const std::string &text, const std::string &name,
                                const std::vector<std::string> &overrides)
 {
   SceneDocument document(column_schema(), text, name, overrides);
-  expand_layer_tables(document, name);
-  ColumnScene scene = checked_scene(document);
+  ColumnScene scene = checked_scene(document, name);
   choose_mesh(document, scene, false);
   return scene;
 }
@@ -276,8 +289,7 @@ ColumnScene parse_column_scene(const std::string &text, const std::string &name,
 ColumnScene read_column_scene(const std::string &path, const std::vector<std::string> &overrides)
 {
   SceneDocument document(column_schema(), read_scene_text(path), path, overrides);
-  expand_layer_tables(document, path);
-  ColumnScene scene = checked_scene(document);
+  ColumnScene scene = checked_scene(document, path);
   find_motion_files(document, path, scene);
   find_libraries(document, path, scene);
   find_umats(document, path, scene);

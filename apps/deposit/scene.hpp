@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,14 @@
 namespace isostat
 {
 class SceneDocument;
+
+/// What a file of the scene says: scenes that name it are equal.
+template <typename T>
+struct FromFile : std::shared_ptr<T>
+{
+  FromFile(std::shared_ptr<T> content = nullptr) : std::shared_ptr<T>(std::move(content)) {}
+  bool operator==(const FromFile &) const { return true; }
+};
 
 struct ColumnMesh
 {
@@ -35,6 +44,8 @@ struct ColumnMesh
   unsigned points = 0;       ///< Gauss points of an element along each axis; 0: those of MeshSpec
   Sides sides = Sides::tied;
   std::vector<double> ground_x, ground_z; ///< points of a surface that is not level, m; empty: level
+  std::string file;                       ///< of Gmsh, in place of rectangles; empty: none
+  FromFile<const GivenMesh> given;        ///< what it says, null without one
   bool distributed = false;               ///< one mesh over all ranks instead of a copy on each
 
   bool is_boundary(double x) const; ///< whether elements meet there
@@ -196,6 +207,7 @@ struct ColumnAnalysis
   double highest_frequency = 25;        ///< of interest: what is faster may be damped, Hz
   double first_time = 0, last_time = 0; ///< consolidation
   unsigned steps = 50;
+  std::string petsc; ///< options of the linear solvers; empty: direct
 
   /// Ends of the time steps of a consolidation, rising geometrically from first_time to last_time.
   std::vector<double> times() const;

@@ -81,7 +81,7 @@ constexpr Key mesh_keys[] = {
    .reason = "because elements are linear or quadratic",
    .text = "Degree of the displacement in an element; the pore pressure has degree 1. 2 where drainage is \"coupled\"."},
   {.path = "width", .field = member<&ColumnMesh::width>, .unit = unit::m, .value = "1 m", .range = positive,
-   .text = "Extent of a strip or block along x, of a block along y too."},
+   .text = "Extent of a strip or block along x, of a block along y too; that of `file`."},
   {.path = "cells_across", .field = member<&ColumnMesh::cells_across>, .value = "1", .range = counts,
    .reason = one_or_more, .text = "Elements over the width."},
   {.path = "distributed", .field = member<&ColumnMesh::distributed>, .value = "false",
@@ -122,7 +122,7 @@ constexpr Key layer_keys[] = {
   {.path = "thickness", .field = member_of<ColumnLayer, &ColumnLayer::thickness>, .unit = unit::m,
    .presence = Presence::required, .value = "5 m", .range = {1e-3, 1e5},
    .reason = "because a layer without height has no cells, and the crust of the Earth is not as thick",
-   .text = "Thickness of the layer."},
+   .text = "Thickness of the layer; left out with `mesh.file`, whose cells it has: the mean."},
   {.path = "table", .field = member<&ColumnLayer::table>, .presence = Presence::optional, .value = "profile.csv",
    .kinds = formula,
    .text = "A CSV file in place of thickness, shear_velocity and density: its rows, from the surface down, become "
@@ -290,6 +290,10 @@ constexpr Key analysis_keys[] = {
    .text = "Cells move with the soil: stresses are those of the deformed soil (updated Lagrangian), and water flows "
            "through it as it is. Left out, strains are small: at settlements or rotations of 10 % they are wrong by "
            "about as much. Packings turn their stress with the soil, formulas do not. docs/theory_column.md, section 2."},
+  {.path = "petsc", .field = member<&ColumnAnalysis::petsc>, .presence = Presence::optional,
+   .value = "-statics_ksp_type cg -statics_pc_type gamg",
+   .text = "Options of PETSc for the linear systems; left out: direct solution, the same bits for any number of ranks. "
+           "docs/columns.md."},
   {.path = "first_time", .field = member<&ColumnAnalysis::first_time>, .unit = unit::s, .presence = Presence::required,
    .value = "10 s", .range = positive, .kinds = consolidation,
    .text = "End of the first time step after loading; later ones grow geometrically. Elements where water drains are "

@@ -85,10 +85,11 @@ void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::v
     }
   catch (const RunFailure &failure)
     {
-      if (!scene.mesh.ground_x.empty())
-        throw InputError(fmt::format("{}\n  The ground may be too steep for the packings. Give it a gentler one "
-                                     "(mesh.ground_z), denser packings (relative_density), or a k0 nearer to 1.",
-                                     failure.what()));
+      if (!ground_line(scene.mesh).is_level())
+        throw InputError(
+            fmt::format("{}\n  The ground may be too steep for the packings. Give it a gentler one "
+                        "(mesh.ground_z, mesh.file), denser packings (relative_density), or a k0 nearer to 1.",
+                        failure.what()));
       if (scene.slope.tangent == 0)
         throw;
       throw InputError(
@@ -98,20 +99,20 @@ void bring_to_stress(const ColumnScene &scene, RveMaterial &grains, const std::v
     }
 }
 
-/// In situ stress in a box: K0 at the depth below the ground, and the shear stress by which the horizontal stress,
-/// which falls with the ground, is in equilibrium on every vertical: to the second order of the inclination.
-std::vector<Stress> between_walls(const ColumnScene &scene, const CellTables &mesh)
+/// In situ stress in a box or a mesh of a file: K0 at the depth below the ground, and the shear stress by which the
+/// horizontal stress, which falls with the ground, is in equilibrium on every vertical: to the second order of the
+/// inclination.
+std::vector<Stress> below_ground(const ColumnScene &scene, const CellTables &mesh)
 {
   const MeshSpec spec = mesh_spec(scene);
-  const double height = spec.soil.height(), step = 1e-6 * scene.mesh.width;
+  const double step = 1e-6 * scene.mesh.width;
   const double everywhere = scene.load.bears_on_all() ? scene.load.surcharge : 0; // a part's comes on in settle()
   std::vector<Stress> stresses;
   for (std::size_t q = 0; q < mesh.n_points(); ++q)
     {
-      const auto &[x, y, z] = mesh.position[q];
-      const double scale = spec.ground_at(x) / height; // of the thickness of all layers
+      const double x = mesh.position[q][0];
       const double inclination = (spec.ground_at(x + step) - spec.ground_at(x - step)) / (2 * step);
-      const double vertical = scale * spec.soil.vertical_effective_stress(z / scale) + everywhere;
+      const double vertical = spec.vertical_effective_stress(mesh.position[q]) + everywhere;
       const double k0 = spec.soil.layers[mesh.cell_layer[q / mesh.points_per_cell()]].k0;
       stresses.push_back({-k0 * vertical, -k0 * vertical, -vertical, 0, -k0 * inclination * vertical, 0});
     }
@@ -208,8 +209,8 @@ std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &m
       const double p = -scene.biaxial.confinement;
       return std::vector<Stress>(mesh.n_points(), Stress{p, p, p, 0, 0, 0});
     }
-  if (scene.mesh.sides == Sides::walls)
-    return between_walls(scene, mesh);
+  if (scene.mesh.sides == Sides::walls || scene.mesh.given)
+    return below_ground(scene, mesh);
   const SoilProfile soil = soil_profile(scene);
   std::vector<Stress> stresses(mesh.n_points());
   for (std::size_t q = 0; q < stresses.size(); ++q)

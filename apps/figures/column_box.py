@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figures of a box of soil: maps over the mesh as it has moved, and the motion of its surface."""
+from collections import Counter
+
 import numpy as np
 from matplotlib.collections import PolyCollection
 
@@ -51,12 +53,13 @@ class Mesh:
 
     def surface(self):
         """Corners at the surface from left to right: (place in the table of corners, their x)."""
-        flat = self.corners.reshape(-1, 2)
-        top = {}
-        for index, (x, z) in enumerate(flat):
-            key = round(float(x), 6)
-            if key not in top or z > flat[top[key], 1]:
-                top[key] = index
+        flat = self.corners.reshape(-1, 2).round(6)
+        corners = np.arange(len(flat)).reshape(-1, 4)
+        sides = np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1).reshape(-1, 2)  # anticlockwise
+        ends = [frozenset(map(tuple, flat[side])) for side in sides]
+        once = Counter(ends)
+        top = {float(flat[index, 0]): index for side, pair in zip(sides, ends)  # has soil on its left, seen leftwards
+               if once[pair] == 1 and flat[side[1], 0] < flat[side[0], 0] - 1e-6 for index in side}
         return np.array([top[x] for x in sorted(top)]), np.array(sorted(top))
 
 

@@ -156,6 +156,7 @@ class Column:
     def _read_scene(self):
         scene = self.scene
         self.layers = [of_layer(table) for table in scene.get("layer", [])]
+        self.is_drawn = bool(scene.get("mesh", {}).get("file"))  # layers lie anywhere
         scale = self._ground_scale()
         for layer in self.layers:
             layer["height"] *= scale
@@ -192,11 +193,11 @@ class Column:
 
     def bottom(self, depth):
         """Of the layers, m; of a scene that cannot be read the largest depth."""
-        return sum(layer["height"] for layer in self.layers) or float(depth.max())
+        return (0 if self.is_drawn else sum(layer["height"] for layer in self.layers)) or float(depth.max())
 
     def boundaries(self):
         """Depths between layers, m."""
-        return list(np.cumsum([layer["height"] for layer in self.layers])[:-1])
+        return [] if self.is_drawn else list(np.cumsum([layer["height"] for layer in self.layers])[:-1])
 
     def layer_at(self, depth):
         """The number of the layer at each depth."""

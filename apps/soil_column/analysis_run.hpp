@@ -70,7 +70,12 @@ public:
       {
         fail(failure, at);
       }
-    return {report(), times(), failure_};
+    Summary summary = report();
+    if (const LinearEffort linear = run_.linear_effort(); linear.solves > 0)
+      summary.row("linear solver", "{}: {} iterations in {} solutions, at most {}",
+                  Value{"linear_solver", linear.method}, Value{"linear_iterations", linear.iterations},
+                  Value{"linear_solutions", linear.solves}, Value{"linear_iterations_most", linear.most});
+    return {std::move(summary), times(), failure_};
   }
 
 protected:
@@ -184,6 +189,13 @@ private:
     });
   }
 
+  /// What an iterative linear solver takes.
+  std::string linear_state() const
+  {
+    const LinearEffort linear = run_.linear_effort();
+    return linear.solves > 0 ? fmt::format("  {}: {:.1f} iterations", linear.method, linear.mean()) : "";
+  }
+
   void note_provenance() const
   {
     write_provenance(request_.folder, to_toml(scene_), request_.command_line,
@@ -195,7 +207,7 @@ private:
   void observe()
   {
     if (progress_.due(run_.n_steps(), static_cast<double>(run_.n_steps()) / n_total()))
-      progress_.say(progress_.line(key_state()));
+      progress_.say(progress_.line(key_state()) + linear_state());
     const bool now = has_long_steps() || run_.n_steps() % 256 == 0;
     const bool asking_is_cheap = alone_ || space_.shared_out(); // next to the sums over all ranks in each step
     if ((now || asking_is_cheap) && on_any_rank(stop_requested()))

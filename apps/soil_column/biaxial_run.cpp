@@ -40,6 +40,7 @@ StaticsSettings block_settings(const ColumnScene &scene)
   StaticsSettings settings;
   settings.pore_water = has_water(scene);
   settings.displacements = {{{Face::surface, 2}, [=](double t, const Place &) { return -way * t / end; }}};
+  settings.petsc = scene.analysis.petsc;
   settings.newton = scene.load_steps.newton;
   settings.min_force = scene.biaxial.confinement * scene.mesh.width;
   return interruptible(settings);

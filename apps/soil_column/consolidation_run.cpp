@@ -8,10 +8,12 @@ namespace isostat
 {
 namespace
 {
-StaticsSettings settings_of(const ColumnLoad &load, bool pore_water)
+/// @param petsc  options of the linear system
+StaticsSettings settings_of(const ColumnLoad &load, bool pore_water, const std::string &petsc)
 {
   StaticsSettings settings;
   settings.pore_water = pore_water;
+  settings.petsc = petsc;
   settings.tractions = {{Face::surface, [load](double t, const Place &) { return load.traction(t); }}};
   return settings;
 }
@@ -21,7 +23,7 @@ double final_settlement(const ColumnRequest &request, const FiniteElementSpace &
 {
   const ColumnScene &scene = request.scene;
   const SoilMaterial soil = soil_material(scene, space, 1, request.materials);
-  Statics drained(space, *soil.material, settings_of(scene.load, false));
+  Statics drained(space, *soil.material, settings_of(scene.load, false, {}));
   double settlement = std::numeric_limits<double>::quiet_NaN();
   try
     {
@@ -40,7 +42,8 @@ double final_settlement(const ColumnRequest &request, const FiniteElementSpace &
 class ConsolidationRun : public StaticsRun
 {
 public:
-  explicit ConsolidationRun(const ColumnRequest &request) : StaticsRun(request, settings_of(request.scene.load, true))
+  explicit ConsolidationRun(const ColumnRequest &request)
+      : StaticsRun(request, settings_of(request.scene.load, true, request.scene.analysis.petsc))
   {
     if (resumed_)
       immediate_settlement_ = resumed_->number("immediate_settlement");

@@ -25,6 +25,7 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
   settings.drainage = scene.water.drainage;
   settings.lagged_compressibility = scene.water.lagged_compressibility;
   settings.base = scene.base;
+  settings.petsc = scene.analysis.petsc;
   settings.motion = motions;
   if (scene.load.kind != LoadKind::none)
     settings.surface_traction = [load = scene.load](double t) { return load.traction(t); };

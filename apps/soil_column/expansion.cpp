@@ -8,7 +8,8 @@ namespace isostat
 {
 CapExpansions::CapExpansions(const ColumnScene &scene, const FiniteElementSpace &space)
 {
-  if (scene.water.drainage != Drainage::coupled || scene.mesh.distributed || scene.mesh.sides == Sides::walls)
+  if (scene.water.drainage != Drainage::coupled || scene.mesh.distributed || scene.mesh.sides == Sides::walls ||
+      scene.mesh.given)
     return;
   double z = scene.height();
   for (std::size_t k = 0; k + 1 < scene.layers.size(); ++k)

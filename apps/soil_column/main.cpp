@@ -52,6 +52,9 @@ void run_scene(const SceneOptions &options)
     return tell_of_finished(request.folder, figures_of, !options.no_figures);
   if (options.check_mesh && request.scene.analysis.kind != AnalysisKind::dynamic)
     throw InputError("--check-mesh belongs to a dynamic analysis. Leave it out.");
+  if (options.check_mesh && request.scene.mesh.given)
+    throw InputError(
+        "--check-mesh cannot halve the elements of mesh.file. Leave it out, and compare with a coarser one.");
   RunResult result = run_column(request);
   if (options.check_mesh)
     check_mesh(request, result);
@@ -72,6 +75,8 @@ constexpr SceneProgram soil_column{
                     "not depend on it",
     .manual_page = "docs/column_scene_reference.md",
     .mesh_check = "dynamic: run with half the elements, too, and state what differs",
+    .petsc = "options of PETSc for the linear systems, e.g. \"-statics_ksp_type cg -statics_pc_type gamg\"; short for "
+             "--set analysis.petsc=",
     .defaults = default_column_scene,
     .manual = column_scene_manual,
     .resolved = validated,

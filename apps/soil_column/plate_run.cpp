@@ -13,6 +13,7 @@ StaticsSettings settings_of(const ColumnScene &scene)
   const double way = plate.inwards() * plate.displacement;
   StaticsSettings settings;
   settings.displacements = {{{patch_face(0), plate.axis()}, [way](double t, const Place &) { return way * t; }}};
+  settings.petsc = scene.analysis.petsc;
   settings.newton = scene.load_steps.newton;
   settings.min_force = 1e-3 * largest_weight(scene); // before the plate has a force of its own
   return settings;

@@ -23,6 +23,8 @@ void check_ranks(const ColumnScene &scene)
     cells += layer.n_cells();
   for (unsigned axis = 1; axis < scene.mesh.dimension; ++axis)
     cells *= scene.mesh.cells_across;
+  if (scene.mesh.given)
+    cells = scene.mesh.given->cells.size();
   if (scene.mesh.distributed && cells < static_cast<std::size_t>(ranks().size))
     throw InputError(
         fmt::format("mesh.distributed: {} cells on {} ranks; must be at most one rank for each cell. Start "

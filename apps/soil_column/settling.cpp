@@ -50,6 +50,7 @@ StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
       settings.tractions.push_back({face, [&load = scene.load](double t, const Place &place) {
                                       return std::array<double, 3>{0, 0, -t * load.surcharge_at(place[0])};
                                     }});
+  settings.petsc = scene.analysis.petsc;
   settings.newton = scene.has_grains()
                         ? NewtonSettings{.tolerance = 5e-3, .max_iterations = 0, .relaxation_iterations = 300}
                         : NewtonSettings{.tolerance = 1e-6, .max_iterations = 15, .relaxation_iterations = 300};

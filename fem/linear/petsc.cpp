@@ -23,48 +23,18 @@ void PetscEntries::add(PetscInt row, PetscInt column, double value)
   values.push_back(value);
 }
 
-PetscMatrix petsc_matrix(MPI_Comm communicator, std::size_t n_rows, std::size_t n_columns, PetscEntries &entries)
+PetscMatrix petsc_matrix(MPI_Comm communicator, std::size_t n_rows, std::size_t n_columns, PetscEntries &entries,
+                         PetscInt block)
 {
   Mat matrix = nullptr;
   petsc_check(MatCreate(communicator, &matrix));
   PetscMatrix owner(matrix);
   petsc_check(MatSetSizes(matrix, n_rows, n_columns, PETSC_DETERMINE, PETSC_DETERMINE));
+  petsc_check(MatSetBlockSize(matrix, block));
   petsc_check(MatSetType(matrix, MATAIJ));
   petsc_check(MatSetPreallocationCOO(matrix, entries.rows.size(), entries.rows.data(), entries.columns.data()));
   petsc_check(MatSetValuesCOO(matrix, entries.values.data(), INSERT_VALUES));
   return owner;
-}
-
-PetscMatrix symbolic_factor(Mat matrix, MPI_Comm communicator, bool banded)
-{
-  int n_ranks = 1;
-  MPI_Comm_size(communicator, &n_ranks);
-  Mat factor = nullptr;
-  petsc_check(MatGetFactor(matrix, n_ranks > 1 ? MATSOLVERMUMPS : MATSOLVERPETSC, MAT_FACTOR_LU, &factor));
-  PetscMatrix owner(factor);
-  IS rows = nullptr, columns = nullptr;
-  if (n_ranks == 1)
-    petsc_check(MatGetOrdering(matrix, banded ? MATORDERINGNATURAL : MATORDERINGND, &rows, &columns));
-  MatFactorInfo info;
-  petsc_check(MatFactorInfoInitialize(&info));
-  petsc_check(MatLUFactorSymbolic(factor, matrix, rows, columns, &info));
-  petsc_check(ISDestroy(&rows));
-  petsc_check(ISDestroy(&columns));
-  return owner;
-}
-
-void numeric_factor(Mat matrix, Mat factor)
-{
-  MatFactorInfo info;
-  petsc_check(MatFactorInfoInitialize(&info));
-  petsc_check(MatLUFactorNumeric(factor, matrix, &info));
-}
-
-PetscMatrix factorised(Mat matrix, MPI_Comm communicator, bool banded)
-{
-  PetscMatrix factor = symbolic_factor(matrix, communicator, banded);
-  numeric_factor(matrix, factor.get());
-  return factor;
 }
 
 PetscView::PetscView(MPI_Comm communicator, std::size_t n_owned)

@@ -9,8 +9,8 @@
 
 namespace isostat
 {
-/// PETSc's matrices and vectors as values that clean up after themselves. Only the files of the two linear systems see
-/// this header: those of fem/water's pressures and fem/solve/statics/system.cpp.
+/// PETSc's matrices and vectors as values that clean up after themselves. Only the files of the linear systems see this
+/// header: those of their solver, of fem/water's pressures and fem/solve/statics/system.cpp.
 /// tested: tests/fem/water/pressure_system_test.cpp, tests/fem/solve/statics_test.cpp
 
 /// @throws RunFailure  PETSc reports an error
@@ -34,15 +34,10 @@ struct PetscEntries
 };
 
 /// The sparse matrix of some entries; values of an entry that is named several times are added in that order. Keeps the
-/// pattern: MatSetValuesCOO() may give it other values.   @param n_rows, n_columns  owned by this rank
-PetscMatrix petsc_matrix(MPI_Comm communicator, std::size_t n_rows, std::size_t n_columns, PetscEntries &entries);
-
-/// Room for the LU factors of a square matrix: PETSc's own on one rank (in natural order if the matrix is banded, else
-/// by nested dissection), MUMPS on several. numeric_factor() fills it, again for other values of the same pattern.
-PetscMatrix symbolic_factor(Mat matrix, MPI_Comm communicator, bool banded);
-void numeric_factor(Mat matrix, Mat factor);
-/// Both at once.
-PetscMatrix factorised(Mat matrix, MPI_Comm communicator, bool banded);
+/// pattern: MatSetValuesCOO() may give it other values.   @param n_rows, n_columns  owned by this rank   @param block
+/// rows that belong to one node, which solvers may make use of
+PetscMatrix petsc_matrix(MPI_Comm communicator, std::size_t n_rows, std::size_t n_columns, PetscEntries &entries,
+                         PetscInt block = 1);
 
 /// PETSc's name for the owned values of a Vector, without a copy.
 class PetscView

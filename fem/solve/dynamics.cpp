@@ -157,6 +157,11 @@ std::vector<double> Dynamics::point_pressure() const
   return pressure;
 }
 
+LinearEffort Dynamics::linear_effort() const
+{
+  return pressure_system_ ? pressure_system_->effort().after(earlier_effort_) : LinearEffort{};
+}
+
 Vector Dynamics::acceleration() const
 {
   Vector a = v_;

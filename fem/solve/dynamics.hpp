@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "fem/linear/linear_effort.hpp"
 #include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
 #include "fem/solve/skeleton_viscosity.hpp"
@@ -27,6 +28,7 @@ struct DynamicsSettings
   double viscous_above = 25; ///< f_c, Hz
   bool large_strain = false; ///< updated Lagrangian: see Dynamics
   Drainage drainage = Drainage::dry;
+  std::string petsc = {}; ///< options of PETSc for the pressure's system, each beginning with -water_; empty: LU
   bool lagged_compressibility = false; ///< undrained: volume strain -dp/Q of the step before, instead of none
   Base base = {};
   std::array<Motion, 3> motion = {};     ///< along x, y, z: of the base, or of the rock's outcrop if compliant
@@ -99,6 +101,7 @@ public:
   std::vector<double> point_pressure() const;
   /// Sum over all ranks.
   DynamicsEnergy energy() const;
+  LinearEffort linear_effort() const; ///< of an iterative solver of the pressure, since the start or restore()
   const DynamicsSettings &settings() const { return settings_; }
 
   /// Bit for bit; on another number of ranks that share out the mesh, to round-off of their sums. Collective.
@@ -167,6 +170,7 @@ private:
   std::vector<Stress> initial_stresses_;
   std::vector<PoreFluid> lagged_fluids_; ///< of the points, lagged compressibility only
   std::unique_ptr<PressureSystem> pressure_system_;
+  LinearEffort earlier_effort_; ///< of pressure systems before this one
 
   // of one step
   std::array<double, 3> frame_ = {}; ///< minus the acceleration of a rigid base

@@ -42,8 +42,10 @@ void deform(const FiniteElementSpace &space, const Vector &u, CellGeometry &at)
 
 void Dynamics::make_pressure_system()
 {
+  earlier_effort_ = linear_effort();
   const CellGeometry &at = deformed_ ? deformed_->found : space_;
-  pressure_system_ = std::make_unique<PressureSystem>(space_, at, time_step_, update_, permeable_strains_);
+  pressure_system_ =
+      std::make_unique<PressureSystem>(space_, at, time_step_, update_, permeable_strains_, settings_.petsc);
 }
 
 void Dynamics::follow_void_ratio()

@@ -130,6 +130,8 @@ void Statics::fail(double size) const
                                report_.material_failed ? "" : "; the load may be more than the soil bears"));
 }
 
+LinearEffort Statics::linear_effort() const { return problem_->system->effort(); }
+
 std::vector<double> Statics::point_pressure() const { return problem_->space.point_pressures(state_.now.p); }
 
 double Statics::reaction(FaceComponent of) const

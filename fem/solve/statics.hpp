@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "fem/linear/linear_effort.hpp"
 #include "fem/solve/statics/report.hpp"
 #include "fem/solve/statics/settings.hpp"
 #include "fem/solve/statics/state.hpp"
@@ -65,6 +66,7 @@ public:
   /// over all ranks; + along the axis. An unknown that two faces hold counts on both. N (1 m along axes not meshed)
   double reaction(FaceComponent of) const;
   const StaticsEffort &effort() const { return report_.effort; }
+  LinearEffort linear_effort() const;                  ///< of iterative linear solvers, since the start or restore()
   double residual() const { return report_.residual; } ///< of the last trial, in units of the force scale
 
   /// Bit for bit; on another number of ranks that share out the mesh, to round-off of their sums. Between steps, or

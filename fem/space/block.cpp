@@ -23,6 +23,18 @@ void halve(double a, double b, double size, const Allowed &allowed, std::vector<
 }
 } // namespace
 
+double MeshSpec::vertical_effective_stress(const Place &place) const
+{
+  const double ground_here = ground_at(place[0]);
+  if (given)
+    {
+      const SoilProfile hole = given->borehole(soil, place[0]);
+      return hole.vertical_effective_stress(hole.height() - (ground_here - place[2]));
+    }
+  const double scale = ground_here / soil.height(); // of the thickness of all layers
+  return scale * soil.vertical_effective_stress(place[2] / scale);
+}
+
 std::vector<double> MeshSpec::cell_ends(unsigned axis, std::size_t layer) const
 {
   const bool up = axis == 2;

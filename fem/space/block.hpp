@@ -2,6 +2,7 @@
 #pragma once
 #include "fem/material/soil.hpp"
 #include "fem/space/axes.hpp"
+#include "fem/space/given_mesh.hpp"
 #include "fem/space/ground.hpp"
 
 #include <vector>
@@ -32,7 +33,8 @@ struct FinePlane
   double size = 0;   ///< of the cells at the plane, m; infinite: none is halved for it
 };
 
-/// A block of soil of layers, `dim` of the axes x, y, z meshed: 1 z; 2 x, z; 3 x, y, z.
+/// A block of soil of layers, `dim` of the axes x, y, z meshed: 1 z; 2 x, z; 3 x, y, z. Its cells are rectangles below
+/// the ground, or those of a mesh that is given.
 /// tested: tests/fem/space/discretisation_test.cpp
 struct MeshSpec
 {
@@ -43,6 +45,9 @@ struct MeshSpec
   unsigned points_per_direction = 0; ///< Gauss points of a cell along each axis; 0: degree in a column, else degree + 1
   /// In place of the level surface at the height of the layers, which keep their parts of it at every x. In 2D only.
   GroundLine ground = {};
+  /// Cells in place of those that thickness and cells of the layers, widths and fine planes make; `ground` is then its
+  /// surface.
+  std::shared_ptr<const GivenMesh> given = {};
   std::vector<FinePlane> fine = {};
   std::vector<Patch> patches = {};     ///< in 2D only; of two that overlap the first has what both claim
   std::array<double, 2> line = {0, 0}; ///< x and y of the vertical along which results are given by depth, m
@@ -56,6 +61,8 @@ struct MeshSpec
   std::vector<double> cell_ends(unsigned axis, std::size_t layer = 0) const;
   /// Height of the surface above the base, m.
   double ground_at(double x) const { return ground.is_level() ? soil.height() : ground.at(x); }
+  /// Of the soil's own weight on the vertical at a place in 2D, compression positive, Pa.
+  double vertical_effective_stress(const Place &place) const;
   double depth(const Place &place) const { return ground_at(place[0]) - place[2]; } ///< below the surface, m
   /// A place on that vertical.
   Place on_line(double depth) const { return {line[0], line[1], ground_at(line[0]) - depth}; }

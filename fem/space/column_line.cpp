@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/space/column_line.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +16,25 @@ double minimum(double x, MPI_Comm communicator)
 {
   MPI_Allreduce(MPI_IN_PLACE, &x, 1, MPI_DOUBLE, MPI_MIN, communicator);
   return x;
+}
+
+/// Of a mesh that is given, from the surface down: the points nearest to the middles between nodes.
+std::vector<std::size_t> points_between(const FiniteElementSpace &space, const std::vector<double> &depths)
+{
+  const MeshSpec &mesh = space.mesh();
+  std::vector<std::size_t> points;
+  for (std::size_t k = 0; k + 1 < depths.size(); ++k)
+    {
+      const Place place = mesh.on_line((depths[k] + depths[k + 1]) / 2);
+      const auto nearest = std::ranges::min_element(space.position, {}, [&](const Place &at) {
+        return std::hypot(at[0] - place[0], at[1] - place[1], at[2] - place[2]);
+      });
+      points.push_back(static_cast<std::size_t>(nearest - space.position.begin()));
+    }
+  const auto depth = [&](std::size_t q) { return mesh.depth(space.position[q]); };
+  std::ranges::sort(points, {}, depth);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
 }
 
 /// From the surface down: of every row of points those nearest to the line on its right, or the last ones if there are
@@ -70,6 +90,8 @@ PointAtDepth point_at_depth(const FiniteElementSpace &space, double depth)
 
 std::vector<double> node_depths(const MeshSpec &mesh)
 {
+  if (mesh.given)
+    return node_depths({.soil = mesh.given->borehole(mesh.soil, mesh.line[0]), .degree = mesh.degree});
   const double scale = mesh.ground.is_level() ? 1 : mesh.ground_at(mesh.line[0]) / mesh.soil.height();
   std::vector<double> depths = {0};
   double top = 0;
@@ -94,12 +116,12 @@ ColumnLine column_line(const FiniteElementSpace &space)
 {
   const MeshSpec &mesh = space.mesh();
   ColumnLine line;
-  for (std::size_t q : points_on_line(space))
+  line.node_depths = node_depths(mesh);
+  for (std::size_t q : mesh.given ? points_between(space, line.node_depths) : points_on_line(space))
     {
       line.points.push_back(q);
       line.point_depths.push_back(mesh.depth(space.position[q]));
     }
-  line.node_depths = node_depths(mesh);
   for (const double depth : line.node_depths)
     line.nodes.push_back(static_cast<unsigned>(space.find_dof(mesh.on_line(depth), 0)));
   return line;

@@ -22,15 +22,20 @@ void check(const MeshSpec &mesh, int dim)
     throw InputError("mesh: no layers; give at least one");
   for (const Layer &layer : mesh.soil.layers)
     {
-      if (!(layer.thickness > 0))
+      if (!mesh.given && !(layer.thickness > 0))
         throw InputError(fmt::format("layer {}: thickness = {} m; must be > 0", layer.name, layer.thickness));
-      if (layer.n_cells() == 0)
+      if (!mesh.given && layer.n_cells() == 0)
         throw InputError(fmt::format("layer {}: no cells; give at least one", layer.name));
       if (!(layer.density > 0))
         throw InputError(fmt::format("layer {}: density = {} kg/m3; must be > 0", layer.name, layer.density));
       if (!(layer.permeability >= 0))
         throw InputError(fmt::format("layer {}: permeability = {} m/s; must be >= 0", layer.name, layer.permeability));
     }
+  if (mesh.given && mesh.given->dimension != static_cast<unsigned>(dim))
+    throw InputError(
+        fmt::format("mesh: given in {} dimensions, meshed in {}; must be the same", mesh.given->dimension, dim));
+  if (mesh.given)
+    return;
   for (int k = 0; k + 1 < dim; ++k)
     if (!(mesh.width[k] > 0) || mesh.cells_across[k] == 0)
       throw InputError(
@@ -92,6 +97,61 @@ void shape_ground(const MeshSpec &spec, dealii::Triangulation<dim> &mesh)
       mesh);
 }
 
+/// A block of rectangles.
+template <int dim>
+void make_block(const MeshSpec &spec, dealii::Triangulation<dim> &mesh)
+{
+  std::vector<std::vector<double>> steps;
+  dealii::Point<dim> low, high;
+  for (int axis = 0; axis + 1 < dim; ++axis)
+    {
+      steps.push_back(sizes_between(spec.cell_ends(axis), spec.width[axis] / spec.cells_across[axis]));
+      high[axis] = spec.width[axis];
+    }
+  steps.push_back(cell_heights(spec));
+  for (double h : steps.back())
+    high[dim - 1] += h;
+  dealii::GridGenerator::subdivided_hyper_rectangle(mesh, steps, low, high, true);
+  mark_cells(spec.soil, mesh);
+  if (!spec.ground.is_level())
+    shape_ground(spec, mesh);
+}
+
+/// The mesh as it was given.
+template <int dim>
+void make_given(const MeshSpec &spec, dealii::Triangulation<dim> &mesh)
+{
+  using namespace dealii;
+  if constexpr (dim > 1)
+    {
+      std::vector<Point<dim>> places;
+      for (const Place &place : spec.given->places)
+        for (int d = 0; d < dim; ++d)
+          (d == 0 ? places.emplace_back() : places.back())[d] = place[mesh_axes[dim][d]];
+      std::vector<CellData<dim>> cells;
+      for (const auto &[corners, layer] : spec.given->cells)
+        {
+          const CellMark mark{static_cast<unsigned>(cells.size()), layer};
+          cells.emplace_back().vertices.assign(corners.begin(), corners.begin() + (1 << dim));
+          cells.back().material_id = mark.packed(spec.soil.layers.size());
+        }
+      std::vector<CellData<dim - 1>> sides;
+      for (const auto &[corners, face] : spec.given->sides)
+        {
+          sides.emplace_back().vertices.assign(corners.begin(), corners.begin() + (1 << (dim - 1)));
+          sides.back().boundary_id = static_cast<types::boundary_id>(boundary_id<dim>(face));
+        }
+      SubCellData of_boundary;
+      if constexpr (dim == 2)
+        of_boundary.boundary_lines = sides;
+      else
+        of_boundary.boundary_quads = sides;
+      GridTools::invert_all_negative_measure_cells(places, cells);
+      GridTools::consistently_order_cells(cells);
+      mesh.create_triangulation(places, cells, of_boundary);
+    }
+}
+
 /// Gives the faces of elements that a patch covers its number.
 /// @throws InputError  a patch of a face that is not meshed, or whose ends are not on boundaries between elements
 template <int dim>
@@ -143,9 +203,17 @@ void tie_sides(dealii::Triangulation<dim> &mesh)
   if constexpr (dim > 1)
     {
       std::vector<dealii::GridTools::PeriodicFacePair<typename dealii::Triangulation<dim>::cell_iterator>> pairs;
-      for (int axis = 0; axis + 1 < dim; ++axis)
-        dealii::GridTools::collect_periodic_faces(mesh, 2 * axis, 2 * axis + 1, axis, pairs);
-      mesh.add_periodicity(pairs);
+      try
+        {
+          for (int axis = 0; axis + 1 < dim; ++axis)
+            dealii::GridTools::collect_periodic_faces(mesh, 2 * axis, 2 * axis + 1, axis, pairs);
+          mesh.add_periodicity(pairs);
+        }
+      catch (const dealii::ExceptionBase &)
+        {
+          throw InputError("mesh: opposite sides do not have corners at the same heights, so they cannot be tied. Draw "
+                           "them alike, or give the block walls.");
+        }
     }
 }
 } // namespace
@@ -156,20 +224,10 @@ std::unique_ptr<dealii::Triangulation<dim>> make_mesh(const MeshSpec &spec, bool
 {
   check(spec, dim);
   auto mesh = std::make_unique<dealii::Triangulation<dim>>();
-  std::vector<std::vector<double>> steps;
-  dealii::Point<dim> low, high;
-  for (int axis = 0; axis + 1 < dim; ++axis)
-    {
-      steps.push_back(sizes_between(spec.cell_ends(axis), spec.width[axis] / spec.cells_across[axis]));
-      high[axis] = spec.width[axis];
-    }
-  steps.push_back(cell_heights(spec));
-  for (double h : steps.back())
-    high[dim - 1] += h;
-  dealii::GridGenerator::subdivided_hyper_rectangle(*mesh, steps, low, high, true);
-  mark_cells(spec.soil, *mesh);
-  if (!spec.ground.is_level())
-    shape_ground(spec, *mesh);
+  if (spec.given)
+    make_given(spec, *mesh);
+  else
+    make_block(spec, *mesh);
   for (std::size_t k = 0; k < spec.patches.size(); ++k)
     cut_patch(spec, k, *mesh);
   if (shared_out)

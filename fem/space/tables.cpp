@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/space/tables.hpp"
 
+#include "base/error.hpp"
 #include "fem/space/unknowns.hpp"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
+
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -89,6 +92,10 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
       append_shares(lumped, t.n_nodes, t.nodal_share);
       for (std::size_t q = 0; q < t.n_gauss; ++q)
         {
+          if (!(u.JxW(q) > 0))
+            throw InputError(fmt::format("mesh: the cell around x = {:.6g} m, z = {:.6g} m is folded or flat; must be "
+                                         "convex",
+                                         cell->center()[0], cell->center()[dim - 1]));
           t.weight.push_back(u.JxW(q));
           t.position.push_back(place_of<dim>(u.quadrature_point(q)));
           t.point_id.push_back(mark.number * t.n_gauss + q);
@@ -96,7 +103,7 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
       for (const unsigned v : cell->vertex_indices())
         t.corner.push_back(place_of<dim>(cell->vertex(v)));
       t.cell_layer.push_back(mark.layer);
-      t.cell_is_wet.push_back(!spec.ground.is_level() || spec.soil.is_wet(cell->center()[dim - 1]));
+      t.cell_is_wet.push_back(spec.given || !spec.ground.is_level() || spec.soil.is_wet(cell->center()[dim - 1]));
       if (t.shape.empty())
         {
           t.shape = shapes(u, t.n_nodes, t.n_gauss);

@@ -27,9 +27,9 @@ double largest(const Vector &v, const FiniteElementSpace &space)
 } // namespace
 
 AirPressure::AirPressure(const FiniteElementSpace &space, std::vector<double> volumes, double time_step,
-                         PetscMatrix linear, const std::vector<unsigned> &held)
+                         PetscMatrix linear, LinearSolver &solver, const std::vector<unsigned> &held)
     : space_(space), volumes_(std::move(volumes)), two_steps_(2 * time_step), fluids_(pore_fluids(space)),
-      linear_(std::move(linear)), held_(space.pressure_vector()), residual_(held_), change_(held_),
+      linear_(std::move(linear)), solver_(solver), held_(space.pressure_vector()), residual_(held_), change_(held_),
       of_p_(space.communicator(), held_.locally_owned_size()),
       of_residual_(space.communicator(), held_.locally_owned_size())
 {
@@ -39,7 +39,6 @@ AirPressure::AirPressure(const FiniteElementSpace &space, std::vector<double> vo
   Mat copy = nullptr;
   petsc_check(MatDuplicate(linear_.get(), MAT_COPY_VALUES, &copy));
   tangent_.reset(copy);
-  factor_ = symbolic_factor(tangent_.get(), space.communicator(), space.dimension == 1);
 }
 
 /// linear p + int N_i (3 Theta(p) - 4 Theta(p') + Theta(p''))/(2 dt) - b; 0 at held pressures.
@@ -86,7 +85,7 @@ void AirPressure::find_tangent(const Vector &p)
     }
   petsc_check(MatAssemblyBegin(tangent_.get(), MAT_FINAL_ASSEMBLY));
   petsc_check(MatAssemblyEnd(tangent_.get(), MAT_FINAL_ASSEMBLY));
-  numeric_factor(tangent_.get(), factor_.get());
+  solver_.set_matrix(tangent_.get());
 }
 
 void AirPressure::solve(const Vector &b, const Vector &before, const Vector &before_that, Vector &p)
@@ -102,7 +101,7 @@ void AirPressure::solve(const Vector &b, const Vector &before, const Vector &bef
     {
       find_residual(b, p);
       find_tangent(p);
-      petsc_check(MatSolve(factor_.get(), of_residual_.of(residual_), of_p_.of(change_)));
+      solver_.solve(of_residual_.of(residual_), of_p_.of(change_));
       of_residual_.release();
       of_p_.release();
       for (std::size_t i = 0; i < p.locally_owned_size(); ++i)

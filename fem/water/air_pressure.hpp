@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/linear/petsc.hpp"
+#include "fem/linear/linear_solver.hpp"
 #include "fem/space/discretisation.hpp"
 #include "fem/water/pore_fluid.hpp"
 
@@ -19,10 +19,9 @@ class AirPressure
 {
 public:
   /// @param linear  H + (G/2 + L/dt) D G^T with room for S; rows of held pressures are those of the identity
-  /// @param held    owned unknowns with p = 0
-  /// @param volumes  of the points, m3
+  /// @param solver  must outlive this   @param held  owned unknowns with p = 0   @param volumes  of the points, m3
   AirPressure(const FiniteElementSpace &space, std::vector<double> volumes, double time_step, PetscMatrix linear,
-              const std::vector<unsigned> &held);
+              LinearSolver &solver, const std::vector<unsigned> &held);
 
   /// p of linear p + int N_i (...)/(2 dt) = b.   @throws RunFailure  no solution in 50 iterations
   void solve(const Vector &b, const Vector &before, const Vector &before_that, Vector &p);
@@ -35,7 +34,8 @@ private:
   std::vector<double> volumes_;
   double two_steps_;
   std::vector<PoreFluid> fluids_; ///< of each point
-  PetscMatrix linear_, tangent_, factor_;
+  PetscMatrix linear_, tangent_;
+  LinearSolver &solver_;       ///< of the tangent
   Vector held_;                ///< 1 at held unknowns, also those of other ranks
   std::vector<double> before_; ///< 4 Theta(p') - Theta(p'') at the points
   Vector residual_, change_;

@@ -38,16 +38,14 @@ double extent_at(const FiniteElementSpace &space, std::size_t cell, const FinePl
   const std::size_t n = space.pressure_nodes_per_cell();
   const Place *corners = &space.corner[cell * n];
   const double size = plane.axis == 2 ? mesh.soil.height() : mesh.width[plane.axis];
-  std::size_t across = 1; // from a corner to the next along the axis
-  for (unsigned d = 0; mesh_axes[space.dimension][d] != static_cast<int>(plane.axis); ++d)
-    across *= 2;
   bool touches = false;
   double extent = 0;
   for (std::size_t i = 0; i < n; ++i)
     {
       const double level = plane.axis == 2 ? size / mesh.ground_at(corners[i][0]) : 1; // before the ground was shaped
       touches = touches || std::abs(corners[i][plane.axis] * level - plane.at) < 1e-9 * size;
-      extent = std::max(extent, std::abs(corners[i][plane.axis] - corners[i ^ across][plane.axis]));
+      for (unsigned d = 0; d < space.dimension; ++d) // to the next corner along each side
+        extent = std::max(extent, std::abs(corners[i][plane.axis] - corners[i ^ (1u << d)][plane.axis]));
     }
   return touches ? extent : 0;
 }

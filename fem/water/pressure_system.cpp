@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/water/pressure_system.hpp"
 
-#include "fem/linear/petsc.hpp"
+#include "fem/linear/linear_solver.hpp"
 #include "fem/water/air_pressure.hpp"
 #include "fem/water/biot_integrals.hpp"
 
@@ -14,7 +14,7 @@ struct PressureSystem::Matrices
   PetscMatrix storage;              ///< S/(2 dt); not with Boyle's law
   PetscMatrix to_force;             ///< G^T
   PetscMatrix ahead, behind;        ///< G/2 + L/dt, G/2 - L/dt
-  PetscMatrix factor;               ///< of the matrix of the pressure; likewise
+  mutable LinearSolver solver;      ///< of the matrix of the pressure; Boyle's law has it
   std::unique_ptr<AirPressure> air; ///< Boyle's law
   std::array<Vector, 3> base_flow;  ///< L times a unit acceleration along each axis: int kb rho_f grad N_i
   std::vector<unsigned> held;       ///< owned unknowns with p = 0: drained, or removed by a tie
@@ -142,10 +142,16 @@ PetscMatrix pressure_matrix(const BiotEntries &entries, Mat storage, double fact
   petsc_check(MatZeroRows(matrix, held.size(), held.data(), 1, nullptr, nullptr));
   return owner;
 }
+/// LU of PETSc on one rank, in natural order if the matrix is banded, else by nested dissection; MUMPS on several.
+LinearSolver pressure_solver(const FiniteElementSpace &space, const std::string &options)
+{
+  const DirectSolver alone{MATSOLVERPETSC, space.dimension == 1 ? MATORDERINGNATURAL : MATORDERINGND, {}};
+  return {space.communicator(), "water_", options, space.shared_out() ? DirectSolver{MATSOLVERMUMPS} : alone};
+}
 } // namespace
 
 PressureSystem::PressureSystem(const FiniteElementSpace &space, const CellGeometry &at, double time_step,
-                               const Vector &update, std::span<const double> volume_strains)
+                               const Vector &update, std::span<const double> volume_strains, const std::string &options)
 {
   const MPI_Comm communicator = space.communicator();
   const PorousPoints points = porous_points(space, volume_strains);
@@ -156,7 +162,7 @@ PressureSystem::PressureSystem(const FiniteElementSpace &space, const CellGeomet
                                .to_force = entries.to_force(),
                                .ahead = entries.coupling(0.5, 1 / time_step),
                                .behind = entries.coupling(0.5, -1 / time_step),
-                               .factor = {},
+                               .solver = pressure_solver(space, options),
                                .air = {},
                                .base_flow = base_flows(space, at, points),
                                .held = held_pressures(space, n_p),
@@ -174,9 +180,9 @@ PressureSystem::PressureSystem(const FiniteElementSpace &space, const CellGeomet
       pressure_matrix(entries, m.storage.get(), boyle ? 0 : 3, m.to_force.get(), time_step, m.of_u.of(update), held);
   m.of_u.release();
   if (boyle)
-    m.air = std::make_unique<AirPressure>(space, at.weight, time_step, std::move(matrix), m.held);
+    m.air = std::make_unique<AirPressure>(space, at.weight, time_step, std::move(matrix), m.solver, m.held);
   else
-    m.factor = factorised(matrix.get(), communicator, space.dimension == 1);
+    m.solver.set_matrix(matrix.get());
 }
 
 PressureSystem::~PressureSystem() = default;
@@ -218,10 +224,12 @@ void PressureSystem::solve(const Vector &v_star, const Vector &v_before, const V
   m.of_p.release();
   if (m.air)
     return m.air->solve(m.right_hand_side, p_before, p_before_that, p);
-  petsc_check(MatSolve(m.factor.get(), m.of_residual.of(m.right_hand_side), m.of_p.of(p)));
+  m.solver.solve(m.of_residual.of(m.right_hand_side), m.of_p.of(p));
   m.of_p.release();
   m.of_residual.release();
 }
+
+LinearEffort PressureSystem::effort() const { return matrices_->solver.effort(); }
 
 void PressureSystem::force(const Vector &p, Vector &f) const
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "fem/linear/linear_effort.hpp"
 #include "fem/space/discretisation.hpp"
 
 namespace isostat
@@ -17,9 +18,10 @@ namespace isostat
 ///
 /// p is excess pressure, compression positive, Pa; v in m/s. The matrix is constant: assembled and factorised once by
 /// PETSc, LU of its own on one rank (natural order in a column, which is banded; else nested dissection), MUMPS on
-/// several. A step costs one pair of triangular solves and four products. Biot's coefficient is 1 (rigid grains). Where
-/// air follows Boyle's law, S is not constant: AirPressure. Where the permeability follows the void ratio, Dynamics
-/// makes another system from time to time.
+/// several, unless options that begin with -water_ say otherwise (LinearSolver); the matrix is not symmetric. A step
+/// costs one pair of triangular solves and four products. Biot's coefficient is 1 (rigid grains). Where
+/// air follows Boyle's law, S is not constant: AirPressure. Where the permeability follows the
+/// void ratio or cells move, Dynamics makes another system from time to time.
 /// tested: tests/fem/water/pressure_system_test.cpp
 class PressureSystem
 {
@@ -28,7 +30,7 @@ public:
   /// @param at      the cells: the space, or where they have moved
   /// @param volume_strains  of the points, that permeability and storage are of; empty: in situ
   PressureSystem(const FiniteElementSpace &space, const CellGeometry &at, double time_step, const Vector &update,
-                 std::span<const double> volume_strains = {});
+                 std::span<const double> volume_strains, const std::string &options);
   ~PressureSystem();
 
   /// p from v* and what came before.  @param base_acceleration  constant over the mesh, m/s2
@@ -36,6 +38,7 @@ public:
              const std::array<double, 3> &base_acceleration, Vector &p) const;
   /// f = G^T p, N.
   void force(const Vector &p, Vector &f) const;
+  LinearEffort effort() const; ///< of iterations
 
 private:
   struct Matrices;

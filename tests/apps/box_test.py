@@ -52,6 +52,21 @@ DISTRIBUTED = settings(mesh__distributed="true")
 MOTION = tuple(f"surface_motion.{key}" for key in ("along_x", "largest", "settlement", "heave"))
 
 
+def gmsh_text(across, up, move):
+    """A mesh of Gmsh of the unit square whose corners are moved to where `move` says; one layer, "sand"."""
+    tag = {(i, k): 1 + i + (across + 1) * k for k in range(up + 1) for i in range(across + 1)}
+    nodes = ["{} {!r} {!r} 0".format(number, *move(i / across, k / up)) for (i, k), number in tag.items()]
+    base, surface = ([(1, 1 + row, ((i, up * row), (i + 1, up * row))) for i in range(across)] for row in (0, 1))
+    low, high = ([(1, 3 + side, ((across * side, k), (across * side, k + 1))) for k in range(up)] for side in (0, 1))
+    cells = [(3, 5, ((i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1))) for k in range(up) for i in range(across)]
+    elements = ["{} {} 2 {} 1 {}".format(number, kind, group, " ".join(str(tag[corner]) for corner in corners))
+                for number, (kind, group, corners) in enumerate(base + surface + low + high + cells, 1)]
+    names = ["1 1 \"base\"", "1 2 \"surface\"", "1 3 \"x_low\"", "1 4 \"x_high\"", "2 5 \"sand\""]
+    return "\n".join(["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "5", *names, "$EndPhysicalNames",
+                      "$Nodes", str(len(nodes)), *nodes, "$EndNodes", "$Elements", str(len(elements)), *elements,
+                      "$EndElements", ""])
+
+
 class Box(ColumnTest):
     def setUp(self):
         super().setUp()
@@ -103,6 +118,28 @@ class Box(ColumnTest):
         column, _ = self.rows_of(re.sub(r"\[mesh\][^\[]*", "", level), "column")
         self.assert_near(box["surface_ux"], column["surface_ux"], 0.07 * np.abs(column["surface_ux"]).max(),
                          "walls, fifteen depths away, and liquefied sand, which magnifies what little comes from there")
+
+    def test_a_mesh_of_a_file_and_solvers_by_options_find_the_same(self):
+        short = settings(analysis__duration="0.3 s")
+        self.assert_done(self.run_column(self.scene, "-o", "run", *short))
+        in_a_box = self.maps("run")
+        self.write("slope.msh", gmsh_text(6, 3, lambda x, z: (12 * x, z * (3.6 - 1.2 * x))))
+        text = re.sub(r"(width|cells_across|ground_.|thickness|cells) = .*\n", "", BOX)
+        self.scene = self.write("drawn.toml", text.replace('sides =', 'file = "slope.msh"\nsides ='))
+        options = "-statics_pc_type gamg -water_pc_type hypre -water_ksp_type bcgs"
+        self.assert_done(self.run_column(self.scene, "-o", "drawn", *short, "--petsc", options, "--no-figures"))
+        drawn = self.maps("drawn")
+        for name in ("corner_x", "corner_z", "sigma_v0", "displacement_x", "u", "gamma_xz"):
+            self.assert_near(drawn[name], in_a_box[name], 1e-6 * np.abs(in_a_box[name]).max(),
+                             f"solutions to 1e-10, and Newton's tolerance of 1e-6 where it settles ({name})")
+        summary = json.loads((self.folder / "drawn/summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["linear_solver"], "bcgs, hypre")
+        self.assertGreater(summary["linear_iterations"], summary["linear_solutions"])
+        self.assert_refused(self.run_column(self.scene, "-o", "typo", *short, "--petsc", "-water_ksp_typ gmres"),
+                            "-water_ksp_typ has no effect")
+        self.scene = self.write("shared.toml", self.scene.read_text(encoding="utf-8").replace("profile_interval", "#")
+                                .replace("paraview_interval", "#"))
+        self.check_shared_mesh((2,), MOTION, 1e-7, *DISTRIBUTED, *short)
 
     def test_ranks_are_alike_bit_for_bit(self):
         self.check_ranks(*settings(analysis__duration="0.2 s"))

@@ -4,6 +4,7 @@
 #include "fem/space/discretisation.hpp"
 
 #include <functional>
+#include <string>
 
 namespace isostat
 {
@@ -38,7 +39,8 @@ struct StaticsSettings
   /// Of the time since water began to flow, the longest part that a sub-step takes; of the first step, that of its
   /// first one. Infinite: whole steps.
   double largest_part = 0.1;
-  double min_force = 0; ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
+  std::string petsc = {}; ///< options of PETSc for the linear system, each beginning with -statics_; empty: LU
+  double min_force = 0;   ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
   /// Asked before each trial of the material in a step of which nothing is kept yet; true: the step is given up.
   /// Empty: never.
   std::function<bool()> gives_up = {};

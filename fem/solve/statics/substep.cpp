@@ -17,7 +17,7 @@ StaticsProblem::StaticsProblem(const FiniteElementSpace &its_space, Material &it
 
 void StaticsProblem::begin_system(double pressure_scale)
 {
-  system = std::make_unique<StaticsSystem>(space, water.get(), pressure_scale);
+  system = std::make_unique<StaticsSystem>(space, water.get(), pressure_scale, settings.petsc);
 }
 
 StaticsSubstep::StaticsSubstep(StaticsProblem &problem, const StaticsState &from, const Loading &end, double duration,

@@ -3,9 +3,11 @@
 #include "fem/solve/statics/system.hpp"
 
 #include "base/error.hpp"
-#include "fem/linear/petsc.hpp"
+#include "fem/linear/linear_solver.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
+#include <tuple>
 
 namespace isostat
 {
@@ -41,11 +43,13 @@ struct StaticsSystem::Matrices
   std::vector<double> values;            ///< entries in the order of preallocate()
   std::vector<Stiffness> known_tangents; ///< that the factor is of
   double known_theta = -1;
-  PetscMatrix whole, with_held, factor; ///< of all unknowns; held rows and columns removed
+  PetscMatrix whole, with_held; ///< of all unknowns; held rows and columns removed
   PetscVector in, out;
+  std::unique_ptr<LinearSolver> solver;
 };
 
-StaticsSystem::StaticsSystem(const FiniteElementSpace &space, const BiotOperator *water, double pressure_scale)
+StaticsSystem::StaticsSystem(const FiniteElementSpace &space, const BiotOperator *water, double pressure_scale,
+                             const std::string &options)
     : space_(space), matrices_(std::make_unique<Matrices>())
 {
   Matrices &m = *matrices_;
@@ -57,8 +61,16 @@ StaticsSystem::StaticsSystem(const FiniteElementSpace &space, const BiotOperator
   space.sum_over_ranks(size);
   m.cell_size = std::pow(size[0] / size[1], 1.0 / space.dimension);
   number_unknowns();
-  preallocate();
+  const bool tells_blocks = !options.empty() && !water;
+  preallocate(tells_blocks ? 3 : 1);
   hold({}, {});
+  // MUMPS: no permutation by values, scaling found at each factorisation, per cent of spare room for pivots. Its
+  // analysis does not look at values: a resumed run has the same pivots.
+  m.solver = std::make_unique<LinearSolver>(space.communicator(), "statics_", options,
+                                            DirectSolver{MATSOLVERMUMPS, nullptr, {{6, 0}, {8, 7}, {14, 60}}},
+                                            [this](KSP ksp) { tell_structure(ksp); });
+  if (tells_blocks && space.dimension > 1)
+    add_rigid_motions();
 }
 
 StaticsSystem::~StaticsSystem() = default;
@@ -100,7 +112,7 @@ void StaticsSystem::number_unknowns()
 }
 
 /// Entries cell by cell, row by row, then the whole diagonal.
-void StaticsSystem::preallocate()
+void StaticsSystem::preallocate(int block)
 {
   Matrices &m = *matrices_;
   const std::size_t n_u = 3 * space_.n_nodes, n_i = m.water ? space_.pressure_nodes_per_cell() : 0;
@@ -125,7 +137,7 @@ void StaticsSystem::preallocate()
     }
   m.values.assign(entries.rows.size(), 0.0);
   entries.values = m.values;
-  m.whole = petsc_matrix(space_.communicator(), m.n_u + m.n_p, m.n_u + m.n_p, entries);
+  m.whole = petsc_matrix(space_.communicator(), m.n_u + m.n_p, m.n_u + m.n_p, entries, block);
   Mat copy = nullptr;
   petsc_check(MatDuplicate(m.whole.get(), MAT_DO_NOT_COPY_VALUES, &copy));
   m.with_held.reset(copy);
@@ -199,7 +211,6 @@ void StaticsSystem::assemble(std::span<const Stiffness> tangents, double theta)
   petsc_check(MatCopy(m.whole.get(), m.with_held.get(), SAME_NONZERO_PATTERN));
 }
 
-/// The analysis does not look at values: a resumed run has the same pivots.
 void StaticsSystem::factorise()
 {
   Matrices &m = *matrices_;
@@ -208,24 +219,55 @@ void StaticsSystem::factorise()
     rows.push_back(m.row(i));
   Mat matrix = m.with_held.get();
   petsc_check(MatZeroRowsColumns(matrix, rows.size(), rows.data(), m.pressure_scale, nullptr, nullptr));
-  MatFactorInfo info;
-  petsc_check(MatFactorInfoInitialize(&info));
-  if (!m.factor)
+  try
     {
-      Mat factor = nullptr;
-      petsc_check(MatGetFactor(matrix, MATSOLVERMUMPS, MAT_FACTOR_LU, &factor));
-      m.factor.reset(factor);
-      petsc_check(MatMumpsSetIcntl(factor, 6, 0));   // no permutation by values
-      petsc_check(MatMumpsSetIcntl(factor, 8, 7));   // scaling found at each factorisation
-      petsc_check(MatMumpsSetIcntl(factor, 14, 60)); // per cent of spare room for pivots
-      petsc_check(MatLUFactorSymbolic(factor, matrix, nullptr, nullptr, &info));
+      m.solver->set_matrix(matrix);
     }
-  petsc_check(MatLUFactorNumeric(m.factor.get(), matrix, &info));
-  MatFactorError error;
-  petsc_check(MatFactorGetError(m.factor.get(), &error));
-  if (error != MAT_FACTOR_NOERROR)
-    throw RunFailure("the tangent is singular: a part moves freely, or a soil has no stiffness");
+  catch (const RunFailure &failure)
+    {
+      throw RunFailure(
+          fmt::format("the tangent is singular: a part moves freely, or a soil has no stiffness ({})", failure.what()));
+    }
 }
+
+/// Displacements and pressures by name, for -statics_pc_type fieldsplit.
+void StaticsSystem::tell_structure(KSP ksp) const
+{
+  const Matrices &m = *matrices_;
+  if (m.n_p == 0)
+    return;
+  PC pc = nullptr;
+  petsc_check(KSPGetPC(ksp, &pc));
+  for (const auto &[name, n, start] : {std::tuple{"u", m.n_u, m.of_u.front()}, {"p", m.n_p, m.of_p.front()}})
+    {
+      IS rows = nullptr;
+      petsc_check(ISCreateStride(space_.communicator(), static_cast<PetscInt>(n), start, 1, &rows));
+      petsc_check(PCFieldSplitSetIS(pc, name, rows));
+      petsc_check(ISDestroy(&rows));
+    }
+}
+
+/// Motions without strain, which algebraic multigrid needs on coarse levels.
+void StaticsSystem::add_rigid_motions()
+{
+  const Matrices &m = *matrices_;
+  Vec places = nullptr;
+  petsc_check(VecCreateMPI(space_.communicator(), static_cast<PetscInt>(m.n_u), PETSC_DETERMINE, &places));
+  const PetscVector owner(places);
+  petsc_check(VecSetBlockSize(places, 3));
+  double *values;
+  petsc_check(VecGetArrayWrite(places, &values));
+  const std::vector<Place> of_nodes = space_.node_places();
+  for (std::size_t i = 0; i < m.n_u; ++i)
+    values[i] = of_nodes[i][i % 3];
+  petsc_check(VecRestoreArrayWrite(places, &values));
+  MatNullSpace motions = nullptr;
+  petsc_check(MatNullSpaceCreateRigidBody(places, &motions));
+  petsc_check(MatSetNearNullSpace(m.with_held.get(), motions));
+  petsc_check(MatNullSpaceDestroy(&motions));
+}
+
+LinearEffort StaticsSystem::effort() const { return matrices_->solver->effort(); }
 
 void StaticsSystem::load(MixedVector &x, double p_factor) const
 {
@@ -263,7 +305,7 @@ void StaticsSystem::solve(const MixedVector &residual, MixedVector &step, MixedV
   for (unsigned i : m.held) // their rows say: scale x = scale given
     m.entry(rhs, i) = m.entry(given, i) * (i < m.n_u ? scale : 1 / scale);
   load(rhs, scale);
-  petsc_check(MatSolve(m.factor.get(), m.in.get(), m.out.get()));
+  m.solver->solve(m.in.get(), m.out.get());
   unload(step, scale);
 }
 } // namespace isostat

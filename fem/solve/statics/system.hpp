@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "fem/linear/linear_effort.hpp"
 #include "fem/solve/statics/mixed_vector.hpp"
 #include "fem/water/biot_integrals.hpp"
+
+struct _p_KSP; // PETSc's
 
 namespace isostat
 {
@@ -12,14 +15,15 @@ namespace isostat
 ///
 /// without the second row if there is no pore water. Pressures are scaled by a modulus, so that both rows are of one
 /// size. Assembled by PETSc, factorised by MUMPS (LU: the tangent of a soil need not be symmetric) on any number of
-/// ranks. Held unknowns take given increments. The factor is kept as long as tangent, theta and held unknowns are the
-/// same numbers and the water does not change.
+/// ranks unless options that begin with -statics_ say otherwise (LinearSolver). Held unknowns take given increments.
+/// The factor is kept as long as tangent, theta and held unknowns are the same numbers.
 /// tested: tests/fem/solve/statics_test.cpp
 class StaticsSystem
 {
 public:
   /// @param water  null: no pore water; must outlive this   @param pressure_scale  Pa, about the skeleton's modulus
-  StaticsSystem(const FiniteElementSpace &space, const BiotOperator *water, double pressure_scale);
+  StaticsSystem(const FiniteElementSpace &space, const BiotOperator *water, double pressure_scale,
+                const std::string &options = {});
   ~StaticsSystem();
 
   /// Owned unknowns that are held from now on; others that no cell has are so anyway.
@@ -32,15 +36,19 @@ public:
   /// @param moved  what the residual loses by the held increments alone
   void solve(const MixedVector &residual, MixedVector &step, MixedVector &moved) const;
 
+  LinearEffort effort() const; ///< of iterations
+
   /// r_p counts in a residual as this force, N/m3: pressure scale over the size of a cell.
   double force_per_volume() const;
 
 private:
   struct Matrices;
   void number_unknowns();
-  void preallocate();
+  void preallocate(int block);
   void assemble(std::span<const Stiffness> tangents, double theta);
   void factorise();
+  void tell_structure(_p_KSP *ksp) const;
+  void add_rigid_motions();
   void load(MixedVector &x, double p_factor) const;
   void unload(MixedVector &x, double p_factor) const;
 

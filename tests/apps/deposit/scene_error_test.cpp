@@ -221,6 +221,15 @@ TEST(ColumnSceneError, AnalysisAndLoad)
   expect_refused(smallest, {"must be key=value. Give for example --set analysis.safety=0.5"}, {"safety"});
 }
 
+TEST(ColumnSceneError, OptionsOfLinearSolvers)
+{
+  const Overrides options = {"analysis.petsc=-statics_ksp_type cg -statics_ksp_rtol 1e-8 -water_ksp_type gmres"};
+  expect_refused(smallest, {"analysis.petsc", "no effect without a linear system"}, options);
+  expect_refused(consolidation, {"has the word -water_ksp_type", "begin with -statics_"}, options);
+  expect_refused(consolidation, {"has the word ksp_type"}, {"analysis.petsc=ksp_type cg"});
+  EXPECT_EQ(complaint(consolidation, {"analysis.petsc=-statics_mat_mumps_icntl_14 -1"}), "accepted");
+}
+
 TEST(ColumnSceneError, Output)
 {
   const std::string head = smallest + "[output]\ndepths = ";

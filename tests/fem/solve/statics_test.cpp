@@ -3,6 +3,7 @@
 #include "fem/solve/statics.hpp"
 #include "fem/space/axes.hpp"
 #include "tests/fem/solve/secant_material.hpp"
+#include "tests/support/drawn_mesh.hpp"
 #include "tests/support/near.hpp"
 
 #include <gmock/gmock.h>
@@ -46,7 +47,7 @@ double linear_field(unsigned component, const Place &place)
 
 /// A linear displacement of all sides must be that of the inside too, with one stress.
 template <int dim>
-void patch_test(unsigned degree)
+void patch_test(const MeshSpec &mesh)
 {
   Supports supports;
   StaticsSettings settings;
@@ -57,7 +58,7 @@ void patch_test(unsigned degree)
         settings.displacements.push_back(
             {{face, c}, [c](double, const Place &at) { return linear_field<dim>(c, at); }});
       }
-  const Discretisation<dim> space(block<dim>(degree), supports);
+  const Discretisation<dim> space(mesh, supports);
   Elastic soil({5e7, 0.3}, space.n_points());
   Statics statics(space, soil, settings);
   statics.step(1);
@@ -84,9 +85,23 @@ TEST(Statics, PatchTests)
 {
   for (unsigned degree : {1, 2})
     {
-      patch_test<1>(degree);
-      patch_test<2>(degree);
-      patch_test<3>(degree);
+      patch_test<1>(block<1>(degree));
+      patch_test<2>(block<2>(degree));
+      patch_test<3>(block<3>(degree));
+    }
+}
+
+TEST(Statics, PatchTestsOnDistortedMeshes)
+{
+  for (unsigned degree : {1, 2})
+    {
+      MeshSpec flat =
+                   test::soil_of(test::read_gmsh_text(test::gmsh_text<2>({5, 5, 0}, test::PushedAbout<2>{5, 0.35}), 2)),
+               solid =
+                   test::soil_of(test::read_gmsh_text(test::gmsh_text<3>({3, 3, 3}, test::PushedAbout<3>{3, 0.2}), 3));
+      flat.degree = solid.degree = degree;
+      patch_test<2>(flat);
+      patch_test<3>(solid);
     }
 }
 

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/deposit/mesh_file.hpp"
+
+#include "apps/deposit/scene.hpp"
+#include "base/scene/document.hpp"
+#include "base/scene/reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace isostat
+{
+namespace
+{
+double thickness(const GivenMesh &mesh, std::size_t layer) { return mesh.area(layer) / mesh.width(); }
+
+/// Elements through that thickness at the mean size.
+unsigned cells(const GivenMesh &mesh, std::size_t layer)
+{
+  const double size = std::sqrt(mesh.area(layer) / mesh.n_cells(layer));
+  return static_cast<unsigned>(std::max(1.0, std::round(thickness(mesh, layer) / size)));
+}
+
+std::string name_of(const SceneDocument &document, std::size_t layer)
+{
+  const toml::node *name = document.find(fmt::format("layer.{}.name", layer));
+  return name && name->is_string() ? name->as_string()->get() : std::string();
+}
+} // namespace
+
+std::shared_ptr<const GivenMesh> expand_mesh_file(SceneDocument &document, const std::string &scene_path,
+                                                  std::string &found)
+{
+  const toml::node *file = document.find("mesh.file"), *layers = document.find("layer");
+  if (!file || !file->is_string() || !layers || !layers->is_array_of_tables()) // which is met again where it is wrong
+    return nullptr;
+  found = found_file(document, "mesh.file", scene_path, file->as_string()->get());
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < layers->as_array()->size(); ++k)
+    names.push_back(name_of(document, k));
+  std::shared_ptr<const GivenMesh> mesh = read_gmsh(found, 2, names);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    {
+      const auto has = [&](const char *key) { return document.find(fmt::format("layer.{}.{}", k, key)) != nullptr; };
+      toml::table row;
+      if (!has("thickness"))
+        row.insert("thickness", fmt::format("{} m", thickness(*mesh, k)));
+      if (!has("cells") && !has("cell_size"))
+        row.insert("cells", static_cast<std::int64_t>(cells(*mesh, k)));
+      document.repeat("layer", k, "", {row});
+    }
+  return mesh;
+}
+
+void check_mesh_file(const SceneDocument &document, const ColumnScene &scene)
+{
+  const GivenMesh *mesh = scene.mesh.given.get();
+  if (!mesh)
+    return;
+  if (scene.mesh.dimension != 2)
+    document.refuse("mesh.file", "needs mesh.dimension = 2: the mesh lies in the plane of x and z.");
+  if (mesh->ground.is_level())
+    document.refuse("mesh.file", "has no surface. Put its upper boundary into a physical group named surface.");
+  if (scene.analysis.kind == AnalysisKind::biaxial)
+    document.refuse("mesh.file", "has no place in a biaxial block. Remove it, or give another analysis.kind.");
+  if (scene.water.table > 0)
+    document.refuse("water.table", "must be 0 m with mesh.file: water covers all soil, or there is none if drainage is "
+                                   "\"dry\".");
+  if (scene.slope.tangent > 0)
+    document.refuse("slope.angle", "turns the axes of an infinite slope; a mesh of a file is upright. Remove it.");
+  for (const char *key : {"mesh.ground_x", "mesh.ground_z"})
+    if (document.find(key))
+      document.refuse(key, "has no effect with mesh.file, whose surface it is. Remove it.");
+  if (document.find("mesh.width") && std::abs(scene.mesh.width - mesh->width()) > 1e-9 * mesh->width())
+    document.refuse("mesh.width",
+                    fmt::format("must be that of mesh.file, {} m. Remove it.", number_text(mesh->width())));
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    {
+      const ColumnLayer &layer = scene.layers[k];
+      if (layer.cell_size > 0)
+        document.refuse(fmt::format("layer.{}.cell_size", k), "has no effect with mesh.file. Remove it.");
+      if (std::abs(layer.thickness / thickness(*mesh, k) - 1) > 1e-9 || layer.cells != cells(*mesh, k))
+        document.refuse(fmt::format("layer.{}.thickness", k),
+                        fmt::format("and cells follow from mesh.file: {} m on average, and {}. Remove them.",
+                                    number_text(thickness(*mesh, k)), cells(*mesh, k)));
+    }
+}
+} // namespace isostat

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fem/linear/linear_solver.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace isostat
+{
+struct LinearSolver::Parts
+{
+  std::string prefix;
+  DirectSolver direct;
+  std::function<void(KSP)> prepare;
+  PetscOptions options = nullptr;
+  KSP ksp = nullptr;
+  Mat factor = nullptr; ///< of the KSP; null: an iteration
+  bool is_set_up = false;
+
+  ~Parts()
+  {
+    KSPDestroy(&ksp);
+    PetscOptionsDestroy(&options);
+  }
+};
+
+namespace
+{
+/// While it lives, PETSc takes options from these alone, and leaves messages to petsc_check().
+class OwnOptions
+{
+public:
+  explicit OwnOptions(PetscOptions options)
+  {
+    petsc_check(PetscOptionsPush(options));
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  }
+  ~OwnOptions()
+  {
+    PetscPopErrorHandler();
+    PetscOptionsPop();
+  }
+  OwnOptions(const OwnOptions &) = delete;
+  OwnOptions &operator=(const OwnOptions &) = delete;
+};
+
+/// An error while options are read is one of the options.
+void check_options(PetscErrorCode code, const std::string &prefix)
+{
+  if (!code)
+    return;
+  const char *text = nullptr;
+  PetscErrorMessage(code, &text, nullptr);
+  throw InputError(fmt::format("PETSc refuses an option that begins with -{}: {}. Give names and values of PETSc's "
+                               "manual pages.",
+                               prefix, text ? text : "invalid value"));
+}
+} // namespace
+
+LinearSolver::LinearSolver(MPI_Comm communicator, std::string prefix, const std::string &options, DirectSolver direct,
+                           std::function<void(KSP)> prepare)
+    : parts_(new Parts{std::move(prefix), std::move(direct), std::move(prepare)})
+{
+  petsc_check(PetscOptionsCreate(&parts_->options));
+  petsc_check(PetscOptionsInsertString(parts_->options, options.c_str()));
+  petsc_check(KSPCreate(communicator, &parts_->ksp));
+}
+
+LinearSolver::~LinearSolver() = default;
+LinearSolver::LinearSolver(LinearSolver &&) noexcept = default;
+
+/// LU unless the options say otherwise, GMRES if they name another preconditioner alone. A pivot is zero if it is 0,
+/// whatever its unit.
+void LinearSolver::read_options()
+{
+  Parts &p = *parts_;
+  PC pc = nullptr;
+  petsc_check(KSPGetPC(p.ksp, &pc));
+  petsc_check(KSPSetOptionsPrefix(p.ksp, p.prefix.c_str()));
+  PetscBool preconditions = PETSC_FALSE;
+  petsc_check(PetscOptionsHasName(p.options, p.prefix.c_str(), "-pc_type", &preconditions));
+  petsc_check(KSPSetType(p.ksp, preconditions ? KSPGMRES : KSPPREONLY));
+  petsc_check(KSPSetTolerances(p.ksp, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc_check(PCSetType(pc, PCLU));
+  petsc_check(PCFactorSetMatSolverType(pc, p.direct.package));
+  petsc_check(PCFactorSetZeroPivot(pc, 0));
+  if (p.direct.ordering)
+    petsc_check(PCFactorSetMatOrderingType(pc, p.direct.ordering));
+  check_options(KSPSetFromOptions(p.ksp), p.prefix);
+  if (p.prepare)
+    p.prepare(p.ksp);
+  KSPType method = nullptr;
+  PCType preconditioner = nullptr;
+  MatSolverType package = nullptr;
+  petsc_check(KSPGetType(p.ksp, &method));
+  petsc_check(PCGetType(pc, &preconditioner));
+  effort_.method = fmt::format("{}, {}", method, preconditioner);
+  if (std::string_view(method) != KSPPREONLY || std::string_view(preconditioner) != PCLU)
+    return;
+  petsc_check(PCFactorSetUpMatSolverType(pc));
+  petsc_check(PCFactorGetMatrix(pc, &p.factor));
+  petsc_check(PCFactorGetMatSolverType(pc, &package));
+  if (package && std::string_view(package) == MATSOLVERMUMPS)
+    for (const auto &[number, value] : p.direct.icntl)
+      petsc_check(MatMumpsSetIcntl(p.factor, number, value));
+}
+
+void LinearSolver::refuse_unused() const
+{
+  PetscInt n = 0;
+  char **names = nullptr, **values = nullptr;
+  petsc_check(PetscOptionsLeftGet(parts_->options, &n, &names, &values));
+  std::string unused;
+  for (PetscInt k = 0; k < n && unused.empty(); ++k)
+    if (std::string_view(names[k]).starts_with(parts_->prefix))
+      unused = names[k];
+  petsc_check(PetscOptionsLeftRestore(parts_->options, &n, &names, &values));
+  if (!unused.empty())
+    throw InputError(fmt::format("the option -{} has no effect on this linear system ({}). Correct its name, give the "
+                                 "solver that has it, or remove it.",
+                                 unused, effort_.method));
+}
+
+void LinearSolver::set_matrix(Mat matrix)
+{
+  Parts &p = *parts_;
+  const OwnOptions own(p.options);
+  petsc_check(KSPSetOperators(p.ksp, matrix, matrix));
+  if (!p.is_set_up)
+    read_options();
+  const PetscErrorCode code = KSPSetUp(p.ksp);
+  if (p.is_set_up)
+    petsc_check(code);
+  else
+    check_options(code, p.prefix);
+  petsc_check(KSPSetUpOnBlocks(p.ksp));
+  PC pc = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  petsc_check(KSPGetPC(p.ksp, &pc));
+  petsc_check(PCGetFailedReason(pc, &reason));
+  if (reason != PC_NOERROR)
+    throw RunFailure(
+        fmt::format("the matrix of {} is singular, or has no preconditioner ({})", p.prefix, PCFailedReasons[reason]));
+  if (!p.is_set_up)
+    refuse_unused();
+  p.is_set_up = true;
+}
+
+void LinearSolver::solve(Vec in, Vec out)
+{
+  Parts &p = *parts_;
+  if (p.factor)
+    return petsc_check(MatSolve(p.factor, in, out));
+  const OwnOptions own(p.options);
+  petsc_check(KSPSolve(p.ksp, in, out));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  PetscReal residual = 0;
+  petsc_check(KSPGetConvergedReason(p.ksp, &reason));
+  petsc_check(KSPGetIterationNumber(p.ksp, &iterations));
+  petsc_check(KSPGetResidualNorm(p.ksp, &residual));
+  if (reason < 0)
+    throw RunFailure(fmt::format("the linear system {}({}) has not converged: {} after {} iterations, norm of the "
+                                 "residual {:.3g}. Give it another solver or tolerance (-{}ksp_max_it), or leave its "
+                                 "options out for the direct one.",
+                                 p.prefix, effort_.method, KSPConvergedReasons[reason], iterations, residual,
+                                 p.prefix));
+  ++effort_.solves;
+  effort_.iterations += static_cast<std::uint64_t>(iterations);
+  effort_.most = std::max(effort_.most, static_cast<std::uint64_t>(iterations));
+}
+} // namespace isostat
