@@ -26,6 +26,7 @@ class Analysis:
         self.forces = read_history(folder / "force_distribution.csv")
         self.roses = read_history(folder / "roses.csv")
         onset = read_parsed(folder / "micromechanics.json")["onset"]
+        self.is_axial = np.ptp(self.rows["eps_y"]) > 1e-9  # simple shear has no axial strain
         last = len(self.rows["p"]) - 1
         self.chosen = {"first": 0}
         if last > 0:
@@ -38,7 +39,8 @@ class Analysis:
 
     def label(self, name):
         k = self.chosen[name]
-        return f"{name}: $\\varepsilon_1$ = {100 * self.rows['eps_y'][k]:.3f} %, p' = {self.rows['p'][k] / 1e3:.3g} kPa"
+        strain = f"$\\varepsilon_1$ = {100 * self.rows['eps_y'][k]:.3f} %, " if self.is_axial else ""
+        return f"{name}: {strain}p' = {self.rows['p'][k] / 1e3:.3g} kPa"
 
 
 @draws("fig_force_distribution")
@@ -93,7 +95,7 @@ def roses(analysis):
 
 @draws("fig_anisotropies")
 def anisotropies(analysis):
-    """a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain."""
+    """a_c, a_n, a_t along y, and the fabric of strong and weak contacts, against axial strain (simple shear: p')."""
     # left against strain; right against the number of the snapshot, which sets cycles before liquefaction apart
     rows = analysis.rows
     if len(rows["p"]) < 2:
@@ -104,7 +106,8 @@ def anisotropies(analysis):
     of_fabric = [(label, rows[f"{name}yy"] - 0.5 * (rows[f"{name}xx"] + rows[f"{name}zz"]), colour)
                  for label, name, colour in (("all contacts", "F", BLUE), ("strong", "F_strong_", ORANGE),
                                              ("weak", "F_weak_", GREEN))]
-    for column, x in enumerate((100 * rows["eps_y"], np.arange(len(rows["p"])))):
+    left = 100 * rows["eps_y"] if analysis.is_axial else rows["p"] / 1e3
+    for column, x in enumerate((left, np.arange(len(rows["p"])))):
         for row, curves in enumerate((of_forces, of_fabric)):
             axes = panels[row, column]
             for label, y, colour in curves:
@@ -115,7 +118,8 @@ def anisotropies(analysis):
                     axes.axvline(x[index], color=COLOURS[name], linewidth=0.8, linestyle=":", label=name)
     letters(panels)
     panels[0, 0].set_ylabel("Anisotropy along y")
-    panels[1, 0].set(ylabel=r"$F_{yy} - (F_{xx}+F_{zz})/2$", xlabel=r"Axial strain $\varepsilon_1$ (%)")
+    panels[1, 0].set(ylabel=r"$F_{yy} - (F_{xx}+F_{zz})/2$",
+                     xlabel=r"Axial strain $\varepsilon_1$ (%)" if analysis.is_axial else "p' (kPa)")
     panels[1, 1].set_xlabel("Snapshot")
     panels[1, 1].xaxis.set_major_locator(MaxNLocator(integer=True))
     for row in (0, 1):
