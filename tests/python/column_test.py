@@ -33,6 +33,7 @@ amplitude = "1 m/s2"
 frequency = "4 Hz"
 [analysis]
 duration = "1.2 s"
+viscosity = "0.1 ms"
 [output]
 history_interval = "0.01 s"
 """
