@@ -305,6 +305,7 @@ std::string to_toml(const ColumnScene &scene);
 /// below [[motion]].
 const SceneSchema &column_schema();
 SceneFragment<ColumnMotion> ground_motion_keys(); ///< those of [[motion]]
+SceneFragment<ColumnAnalysis> analysis_keys();    ///< those of [analysis]
 /// Rules that bind several keys.   @throws InputError   tested: tests/apps/deposit/scene_error_test.cpp
 void check_column(const SceneDocument &document, ColumnScene &scene);
 

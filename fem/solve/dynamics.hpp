@@ -62,7 +62,7 @@ struct DynamicsEnergy
 /// deformed cells (FiniteElementSpace::deform()), the increments of displacement gradient that the material gets refer
 /// to the cells at the start of the step. M stays, as mass does. Those of the water and the stable step are found again
 /// when a displacement gradient since the last time exceeds 0.2 %. It is the material that turns its stress with the
-/// soil: packings do, formulas do not. tested: tests/fem/solve/large_strain_test.cpp
+/// soil: packings do, formulas do not. tested: tests/fem/solve/dynamics_geometry_test.cpp
 ///
 /// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,
 /// doi:10.1061/JMCEA3.0001144). Undrained, soil below the water table keeps its volume (u_z = 0), soil above it is

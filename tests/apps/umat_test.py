@@ -107,7 +107,7 @@ class UmatTest(ColumnTest):
             shutil.rmtree(self.folder / "run0")
             shutil.rmtree(self.folder / "run1")
 
-    def test_a_run_that_is_killed_goes_on_to_the_bit_and_ranks_change_none(self):
+    def test_a_killed_run_resumes_bit_for_bit_and_ranks_change_nothing(self):
         scene = self.scene_of(SOIL)
         arguments = [scene, *settings(output__checkpoint="1e-9 min"), "--quiet"]
         self.assert_done(self.run_column(*arguments, "-o", "whole"))

@@ -66,7 +66,7 @@ class PackingAsUmat(FolderTest):
         os.environ["ISOSTAT_UMAT_FOLDER"] = str(cls.folder)
         cls.addClassCleanup(os.environ.pop, "ISOSTAT_UMAT_FOLDER")
 
-    def test_it_is_the_packing_to_the_bit(self):
+    def test_it_is_the_packing_bit_for_bit(self):
         rve = isostat.Rve(self.packing)
         host = Host(np.zeros(6))
         host.advance(np.zeros(6))
@@ -87,7 +87,7 @@ class PackingAsUmat(FolderTest):
         host.advance(np.zeros(6))
         self.assert_near(host.stress, target, 1e-3 * 150e3, "the tolerance of the servo, of p'")
 
-    def test_mistakes_are_told(self):
+    def test_mistakes_are_named(self):
         program = ("import sys; sys.path[:0] = eval(sys.argv[2]); import umat_test as u; "
                    "print(u.Host([0] * 6, int(sys.argv[3]), name=sys.argv[4]).call([0] * 6)[3])")
         for nstatv, name, *parts in ((100, "SAND", "NSTATV = 100; must be at least ", "Give for example"),
@@ -113,7 +113,7 @@ class PackingAsUmat(FolderTest):
         rve.mixed(np.zeros((3, 3)), stress, np.ones((3, 3), bool), tolerance=1e-3)
         return rve
 
-    def test_a_point_of_a_layer_is_the_packing_to_the_bit(self):
+    def test_a_point_of_a_layer_is_the_packing_bit_for_bit(self):
         point = column.SoilPoint(self.scene(), "sand")
         rve = self.brought_to(np.diag(point.stress[:3]))
         for dstran in np.random.default_rng(7).uniform(-2e-5, 2e-5, (4, 6)):

@@ -173,7 +173,7 @@ TEST(LargeStrain, CellsTurnedInsideOutStopWithTheirPlace)
   EXPECT_THAT([&] { space.deform(u, now); }, testing::ThrowsMessage<RunFailure>(testing::HasSubstr("inside out")));
 }
 
-TEST(LargeStrain, ColumnAtRestStaysAtRestToTheBit)
+TEST(LargeStrain, ColumnAtRestStaysAtRestBitForBit)
 {
   const Discretisation<2> space = soft_block<2>(height, 4, shaken_supports(false));
   Elastic material({modulus / 3, 0.25}, space.n_points());
@@ -219,7 +219,7 @@ TEST(LargeStrain, AColumnIsTheSameInAnyDimension)
     }
 }
 
-TEST(LargeStrain, ResumesToTheBit)
+TEST(LargeStrain, ResumesBitForBit)
 {
   Loaded whole(true, Drainage::coupled, 0), resumed(true, Drainage::coupled, 0);
   whole.settlement_after(5);
