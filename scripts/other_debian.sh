@@ -18,6 +18,7 @@ if [[ ! -e $root/bin/sh ]]; then
     exit 1
   fi
   command -v mmdebstrap >/dev/null || { apt-get update -q && apt-get install -q -y mmdebstrap; } >&2
+  mkdir -p "$(dirname "$root")"
   mmdebstrap --quiet --variant=minbase --include=ca-certificates "$suite" "$root.new" \
     "${MIRROR:-http://deb.debian.org/debian}" >&2
   mv "$root.new" "$root"

@@ -33,7 +33,7 @@ def of(label, steps=2.5e4, **motion):
 class Run:
     """One run, as isostat study takes it."""
 
-    kind: str  # prepare; cyclic, to the onset; path, five cycles; monotonic
+    kind: str  # prepare; cyclic, to the onset; network, the same with snapshots; path, five cycles; monotonic
     seed: int
     domain: str
     setting: Setting = of("dynamic")
@@ -56,16 +56,18 @@ class Run:
 
     @property
     def stages(self):
-        return {"prepare": [], "cyclic": [cyclic(cycles=100, reversals_after_liquefaction=0)],
-                "path": [cyclic(cycles=5)], "monotonic": [{"kind": "undrained-monotonic", "strain": 0.005}]}
+        to_the_onset = [cyclic(cycles=100, reversals_after_liquefaction=0)]
+        return {"prepare": [], "cyclic": to_the_onset, "network": to_the_onset, "path": [cyclic(cycles=5)],
+                "monotonic": [{"kind": "undrained-monotonic", "strain": 0.005}]}
 
     # time steps, or evaluations of forces, over those to the onset of a cyclic test
-    share = {"prepare": 2.4, "cyclic": 1, "path": 0.15, "monotonic": 1.3}
+    share = {"prepare": 2.4, "cyclic": 1, "network": 1, "path": 0.15, "monotonic": 1.3}
 
     def scene(self):
         specimen = {"domain": self.domain, "pressure": "200 kPa", "preparation_friction": f"{self.degrees:g} deg"}
         return scene_of(self.name, self.grains, self.seed, specimen, self.stages[self.kind],
-                        motion=dict(self.setting.motion), record_stress="1 kPa", record_strain=1e-4)
+                        motion=dict(self.setting.motion), record_stress="1 kPa", record_strain=1e-4,
+                        snapshots="reversals" if self.kind == "network" else "none")
 
     def estimated_seconds(self):
         denser = 3 if self.degrees < LOOSE and self.kind == "cyclic" else 1
@@ -87,6 +89,7 @@ STATIC, TIGHT = static(5e-5, 0.01, 2e5), static(2.5e-5, 1e-3, 6e5)
 FINEST = static(1.25e-5, 1e-3, 6e5)  # of the path alone
 INCREMENTS = [static(1e-4, 0.01, 2e5), static(2.5e-5, 0.01, 3e5)]
 TOLERANCES = [static(5e-5, 1e-3, 3e5), static(5e-5, 1e-4, 6e5)]
+BY_MARGIN = [DYNAMIC, SLOW, STATIC]  # whose yielding contacts are counted with several margins
 # of monotonic tests, which have a default of their own, I = 4e-5
 ONE_WAY = [of("dynamic", 8e4), STATIC, INCREMENTS[0], TIGHT, of("dynamic, rate / 10", 2.5e6, inertial_number=4e-6)]
 
@@ -114,7 +117,8 @@ def runs(n_seeds):
                             ("cyclic", to_the_onset(seed, degrees))) for setting in settings]
         if seed <= 4:
             result += [Run("monotonic", seed, "rigid-box", setting) for setting in ONE_WAY[:-1]]
-    result += [Run(kind, 1, "rigid-box", setting, MANY) for kind, setting in
+            result += [Run("network", seed, domain, setting) for domain in DOMAINS for setting in BY_MARGIN]
+    result += [Run(kind, seed, "rigid-box", setting, MANY) for seed in (1, 2, 3) for kind, setting in
                (("prepare", DYNAMIC), ("path", FINEST), ("path", TIGHT), ("path", INCREMENTS[1]), ("cyclic", DYNAMIC),
                 ("cyclic", SLOW), ("cyclic", STATIC))]
     result += [Run("monotonic", seed, "rigid-box", ONE_WAY[-1]) for seed in (1, 2)]

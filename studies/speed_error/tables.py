@@ -5,12 +5,14 @@ import warnings
 
 import numpy as np
 
+import isostat
 from studies.ensembles import mean_and_error, mean_and_interval
 from studies.history import History
 from studies.speed_error import plan
 
 REVERSALS = 10  # up to here paths are compared
 STRAINS = (0.001, 0.002, 0.005)  # of monotonic tests
+MARGINS = (1e-9, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3)  # of the yield test
 NOT_CONVERGED = 1.0  # % of p0': specimens farther from the finest path are listed
 
 
@@ -55,12 +57,29 @@ class Cyclic:
             self.before, self.after = ((history.p[row] / history.p0, history.IR[row]) for row in (onset - 1, onset))
 
 
+def indices_by_margin(folder):
+    """I_R for each margin at reversal 10 and at the last one before the onset, and p'/p0' there. Snapshot k of a test
+    whose only stage is cyclic is that of reversal k, 0 of its start."""
+    history = History(folder)
+    results = isostat.read(folder)
+    found = {}
+    for place, number in (("reversal 10", REVERSALS), ("last reversal", int(history.reversals[history.onset]))):
+        packing = results.packing(number)
+        found[place] = [packing.measures()["p"] / history.p0,
+                        *(packing.network(yield_margin=margin)["redundancy_index"] for margin in MARGINS)]
+    return found
+
+
 class Results:
     def __init__(self, store, runs):
         done = [run for run in runs if run.kind != "prepare" and store.is_done(run)]
         self.cyclic = collections.defaultdict(dict)  # by packing, grains and setting, then by seed
         self.monotonic = collections.defaultdict(dict)  # by setting, then by seed
+        self.networks = collections.defaultdict(dict)  # by packing and setting, then by seed
         for run in done:
+            if run.kind == "network":
+                self.networks[run.packing, run.setting][run.seed] = indices_by_margin(store.folder(run))
+                continue
             history, cpu = History(store.folder(run)), store.cpu_seconds(run)
             if run.kind == "monotonic":
                 self.monotonic[run.setting][run.seed] = history, cpu
@@ -69,7 +88,7 @@ class Results:
 
     def tables(self):
         return {"path": self.path_table(), "cycles": self.cycles_table(), "monotonic": self.monotonic_table(),
-                "not_converged": self.not_converged()}
+                "not_converged": self.not_converged(), "margins": self.margins_table()}
 
     def keys(self):
         """Kinds of specimens in the order of the plan, settings by cost."""
@@ -132,6 +151,21 @@ class Results:
                              np.mean([cpu for _, cpu in tests.values()])])
         return ["setting", "axial strain (%)", "seeds", "median distance to the tight static path (% of p0')", "mean",
                 "standard error", "p'/p0' there", "standard error", "steps of the test, to 0.5 %", "CPU time (s)"], rows
+
+    def margins_table(self):
+        """I_R by margin, and less that of the static default on the same specimens."""
+        rows = []
+        for (packing, setting), tests in self.networks.items():
+            static = self.networks.get((packing, plan.STATIC), {})
+            for place in ("reversal 10", "last reversal"):
+                p_ratio = mean_and_error([test[place][0] for test in tests.values()])
+                for k, margin in enumerate(MARGINS, 1):
+                    values = [test[place][k] for test in tests.values()]
+                    less = [test[place][k] - static[seed][place][k] for seed, test in tests.items() if seed in static]
+                    rows.append([packing, setting.label, place, len(tests), *p_ratio, margin, *mean_and_error(values),
+                                 *mean_and_interval(less)])
+        return ["specimens", "setting", "at", "seeds", "p'/p0'", "standard error", "margin", "I_R", "standard error",
+                "less that of the static default", "half 95 % interval"], rows
 
     def not_converged(self):
         rows = [[key[0], key[1], key[2].label, seed, far] for key in self.keys() if key[2] in
