@@ -15,8 +15,8 @@ struct LinearSolver::Parts
   std::function<void(KSP)> prepare;
   PetscOptions options = nullptr;
   KSP ksp = nullptr;
-  Mat factor = nullptr; ///< of the KSP; null: an iteration
-  bool is_set_up = false;
+  Mat factor = nullptr;                         ///< of the KSP; null: an iteration
+  bool has_options = false, is_checked = false; ///< that have been read; that something has made use of
 
   ~Parts()
   {
@@ -62,6 +62,7 @@ LinearSolver::LinearSolver(MPI_Comm communicator, std::string prefix, const std:
                            std::function<void(KSP)> prepare)
     : parts_(new Parts{std::move(prefix), std::move(direct), std::move(prepare)})
 {
+  parts_->is_checked = options.empty();
   petsc_check(PetscOptionsCreate(&parts_->options));
   petsc_check(PetscOptionsInsertString(parts_->options, options.c_str()));
   petsc_check(KSPCreate(communicator, &parts_->ksp));
@@ -127,10 +128,11 @@ void LinearSolver::set_matrix(Mat matrix)
   Parts &p = *parts_;
   const OwnOptions own(p.options);
   petsc_check(KSPSetOperators(p.ksp, matrix, matrix));
-  if (!p.is_set_up)
+  if (!p.has_options)
     read_options();
+  p.has_options = true;
   const PetscErrorCode code = KSPSetUp(p.ksp);
-  if (p.is_set_up)
+  if (p.is_checked)
     petsc_check(code);
   else
     check_options(code, p.prefix);
@@ -139,12 +141,20 @@ void LinearSolver::set_matrix(Mat matrix)
   PCFailedReason reason = PC_NOERROR;
   petsc_check(KSPGetPC(p.ksp, &pc));
   petsc_check(PCGetFailedReason(pc, &reason));
-  if (reason != PC_NOERROR)
-    throw RunFailure(
-        fmt::format("the matrix of {} is singular, or has no preconditioner ({})", p.prefix, PCFailedReasons[reason]));
-  if (!p.is_set_up)
+  MatFactorError error = MAT_FACTOR_NOERROR;
+  if (p.factor)
+    petsc_check(MatFactorGetError(p.factor, &error));
+  if (reason != PC_NOERROR || error != MAT_FACTOR_NOERROR)
+    {
+      petsc_check(KSPReset(p.ksp)); // the next matrix begins anew: MUMPS does not recover
+      p.factor = nullptr;
+      p.has_options = false;
+      throw RunFailure(fmt::format("the matrix of {} is singular, or has no preconditioner (PETSc: {}, {})", p.prefix,
+                                   PCFailedReasons[reason], static_cast<int>(error)));
+    }
+  if (!p.is_checked)
     refuse_unused();
-  p.is_set_up = true;
+  p.is_checked = true;
 }
 
 void LinearSolver::solve(Vec in, Vec out)

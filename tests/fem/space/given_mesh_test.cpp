@@ -12,7 +12,7 @@ namespace isostat
 {
 namespace
 {
-/// A trapezoid of two cells with sloping ground: clay below, sand (group 2 without a name) on top.
+/// A trapezoid of two cells with sloping ground: clay below, sand (group 1 without a name) on top.
 const std::string of_two_layers = R"($MeshFormat
 4.1 0 8
 $EndMeshFormat
@@ -34,7 +34,7 @@ $Entities
 5 0 1 0 4 1 0 1 77 0
 6 0 1 0 4 1 0 0 0
 1 0 0 0 4 1 0 1 9 0
-2 0 1 0 4 3 0 1 2 0
+2 0 1 0 4 3 0 1 1 0
 $EndEntities
 $Nodes
 1 6 1 60
@@ -53,7 +53,7 @@ $Nodes
 4 2 0
 $EndNodes
 $Elements
-7 9 1 9
+8 10 1 11
 0 1 15 1
 1 10
 1 1 1 1
@@ -84,7 +84,7 @@ std::string with(std::string text, const std::string &old, const std::string &no
 
 TEST(GivenMesh, IsReadFromFormat41)
 {
-  const auto mesh = test::read_gmsh_text(with(of_two_layers, "\n7 9 1 9\n", "\n8 9 1 9\n"), 2, {"sand", "clay"});
+  const auto mesh = test::read_gmsh_text(of_two_layers, 2, {"sand", "clay"});
   ASSERT_EQ(mesh->cells.size(), 2u);
   EXPECT_EQ(mesh->cells[0].layer, 1u);
   EXPECT_EQ(mesh->cells[1].layer, 0u);
@@ -99,8 +99,7 @@ TEST(GivenMesh, IsReadFromFormat41)
 
 TEST(GivenMesh, BoreholeAndStressOfTheWeightAboveAPlace)
 {
-  MeshSpec spec =
-      test::soil_of(test::read_gmsh_text(with(of_two_layers, "\n7 9 1 9\n", "\n8 9 1 9\n"), 2, {"sand", "clay"}));
+  MeshSpec spec = test::soil_of(test::read_gmsh_text(of_two_layers, 2, {"sand", "clay"}));
   spec.soil.layers = {{.name = "sand", .density = 1900}, {.name = "clay", .density = 1600}};
   for (const auto &[x, sand] : {std::pair{0.0, 2.0}, {1.0, 1.75}, {4.0, 1.0}})
     {
@@ -134,13 +133,13 @@ TEST(GivenMesh, HasTheVolumeOfItsCellsWhateverTheirShape)
 
 TEST(GivenMesh, RefusesWhatIsNoSoil)
 {
-  const std::string good = with(of_two_layers, "\n7 9 1 9\n", "\n8 9 1 9\n");
+  const std::string &good = of_two_layers;
   const auto refused = [](const std::string &text, const std::vector<std::string> &parts,
                           const std::vector<std::string> &layers = {"sand", "clay"}) {
     test::expect_parts(test::refusal([&] { test::read_gmsh_text(text, 2, layers); }), parts);
   };
   refused(with(good, "2 1 3 1\n8 10 20 40 30", "2 1 2 1\n8 10 20 40"), {"element 8 is a triangle", "Recombine"});
-  refused(with(good, "2 1 3 1\n8 10 20 40 30", "2 1 10 1\n8 10 20 40 30"), {":69: element 8", "type 10", "order 1"});
+  refused(with(good, "2 1 3 1\n8 10 20 40 30", "2 1 10 1\n8 10 20 40 30"), {":57: element 8", "type 10", "order 1"});
   refused(with(good, "4 0 0 4 2 0 1 4 0", "4 0 0 4 2 0 0 0"), {"element 6 at the boundary", "named base, surface"});
   refused(with(good, "1 4 1 2\n6 20 40\n7 40 60\n", "1 4 1 1\n6 20 40\n"), {"a side at x = 4 m, z = 1 m", "x_high"});
   refused(good, {"element 8", "\"clay\", which is no layer", "\"sand\", \"mud\""}, {"sand", "mud"});
