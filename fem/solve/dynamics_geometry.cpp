@@ -43,7 +43,7 @@ void deform(const FiniteElementSpace &space, const Vector &u, CellGeometry &at)
 void Dynamics::make_pressure_system()
 {
   earlier_effort_ = linear_effort();
-  const CellGeometry &at = deformed_ ? deformed_->found : space_;
+  const CellGeometry &at = deformed_ ? deformed_->found : static_cast<const CellGeometry &>(space_);
   pressure_system_ =
       std::make_unique<PressureSystem>(space_, at, time_step_, update_, permeable_strains_, settings_.petsc);
 }
