@@ -146,7 +146,7 @@ void LinearSolver::set_matrix(Mat matrix)
     petsc_check(MatFactorGetError(p.factor, &error));
   if (reason != PC_NOERROR || error != MAT_FACTOR_NOERROR)
     {
-      petsc_check(KSPReset(p.ksp)); // the next matrix begins again: MUMPS does not recover
+      petsc_check(KSPReset(p.ksp)); // MUMPS does not recover: the next matrix gets a new factor
       p.factor = nullptr;
       p.has_options = false;
       throw RunFailure(fmt::format("the matrix of {} is singular, or has no preconditioner (PETSc: {}, {})", p.prefix,

@@ -56,7 +56,7 @@ def front(axes, points):
 
 def error_against_cost(results, path):
     figure, panels = plt.subplots(1, 2, figsize=(11, 4.8), sharey=True)
-    figure.subplots_adjust(left=0.065, right=0.955, top=0.93, bottom=0.11, wspace=0.06)
+    figure.subplots_adjust(left=0.065, right=0.955, top=0.93, bottom=0.11, wspace=0.13)
     drawn = [(axes, [key for key in results.keys() if key[:2] == (domain, plan.GRAINS)])
              for axes, (domain, _) in zip(panels, KINDS)]
     points = {}
