@@ -51,7 +51,7 @@ constexpr Key analysis_key[] = {
   {.path = "petsc", .field = member<&ColumnAnalysis::petsc>, .presence = Presence::optional,
    .value = "-statics_ksp_type cg -statics_pc_type gamg",
    .text = "Options of PETSc for the linear systems; left out: direct solution, the same bits for any number of ranks. "
-           "docs/columns.md."},
+           "docs/column.md."},
   {.path = "first_time", .field = member<&ColumnAnalysis::first_time>, .unit = unit::s, .presence = Presence::required,
    .value = "10 s", .range = positive, .kinds = of_flow,
    .text = "End of the first time step after loading; later ones grow geometrically. Elements where water drains are "
