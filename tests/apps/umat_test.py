@@ -40,6 +40,7 @@ amplitude = "0.1 g"
 frequency = "5 Hz"
 [analysis]
 duration = "0.8 s"
+viscosity = "0 ms"  # that of elastic soil
 [output]
 depths = ["0.5 m", "2.5 m"]
 profile_interval = "0.1 s"
