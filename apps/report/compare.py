@@ -3,6 +3,7 @@
 import re
 
 from figures.common import BadInput, plt, use_style
+from figures.files import check_target
 
 from . import compare_curves, html
 from .folder import NUMBERS, NoResults, find_results
@@ -127,13 +128,10 @@ def page(pair):
 
 
 def leave(first, second, output):
-    """Writes the comparison of two results folders.   Raises NoResults"""
+    """Writes the comparison of two results folders.   Raises BadInput"""
     pair = find_results(first), find_results(second)
     check(pair)
-    if output.is_dir() or not output.absolute().parent.is_dir():
-        raise NoResults(f"{output}: cannot be written. Give a file in a folder that exists with --output.")
-    if output.exists() and not (output.is_file() and html.GENERATOR.encode() in output.read_bytes()[:1000]):
-        raise NoResults(f"{output}: exists and is not a page of Isostat. Give another --output, or move it away.")
+    check_target(output, {output.suffix: html.GENERATOR.encode()})
     text = page(pair)
     try:
         html.write_replacing(output, text)
