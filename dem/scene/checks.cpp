@@ -20,6 +20,19 @@ void need_cell(const SceneDocument &document, const SpecimenSpec &specimen, cons
                                       specimen.domain, document.where("specimen.domain"), otherwise));
 }
 
+/// The range of the tests that a sand was compared with.
+void check_sand(const SceneDocument &document, const SandSpec &sand)
+{
+  const auto check = [&](const std::optional<double> &low, const std::optional<double> &high, const char *name) {
+    if (low && high && *low > *high)
+      document.refuse(fmt::format("sand.lowest_{}", name),
+                      fmt::format("must not be above sand.highest_{} ({}). Correct one of them.", name,
+                                  document.where(fmt::format("sand.highest_{}", name))));
+  };
+  check(sand.lowest_pressure, sand.highest_pressure, "pressure");
+  check(sand.lowest_void_ratio, sand.highest_void_ratio, "void_ratio");
+}
+
 /// The limits of the void ratio.
 void check_limits(const SceneDocument &document, const SpecimenSpec &specimen)
 {
@@ -157,6 +170,7 @@ void check_drive(const SceneDocument &document, const Scene &scene)
 void check_scene(const SceneDocument &document, Scene &scene)
 {
   check_groups(document, scene);
+  check_sand(document, scene.sand);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_pressure(document, scene);

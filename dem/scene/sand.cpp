@@ -65,14 +65,15 @@ fs::path installed_sand(const SceneDocument &document, const std::string &name)
                           names.empty() ? "none in " + folder.string() : fmt::format("{}", fmt::join(names, ", "))));
 }
 
-/// "100 to 200 kPa"; empty: the value is within.
+/// "100 to 200 kPa", "up to 200 kPa"; empty: the value is within.
 std::string range_left(double value, std::optional<double> low, std::optional<double> high, double unit,
                        const char *name)
 {
   if (value >= low.value_or(value) * (1 - 1e-9) && value <= high.value_or(value) * (1 + 1e-9))
     return "";
-  const auto text = [&](std::optional<double> x) { return x ? fmt::format("{:g}", *x / unit) : "any"; };
-  return fmt::format("{} to {}{}", text(low), text(high), name);
+  if (!low || !high)
+    return fmt::format("{} {:g}{}", low ? "from" : "up to", (low ? *low : *high) / unit, name);
+  return fmt::format("{:g} to {:g}{}", *low / unit, *high / unit, name);
 }
 
 std::string beyond(const SandSpec &sand, const std::string &what, const std::string &range)
