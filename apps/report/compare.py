@@ -7,21 +7,10 @@ from figures.files import check_target
 
 from . import compare_curves, html
 from .folder import NUMBERS, NoResults, find_results
-from .quantities import converted, is_number, named, shown
+from .quantities import converted, flat, is_number, named, shown
 
 SAME = 1e-12  # relative difference of numbers that are written with all digits: the same
 NAMES = "AB"
-
-
-def flat(value, name=""):
-    """{"layers.0.density": 1900, ...} of nested tables and lists; a list of plain values is one entry."""
-    if isinstance(value, dict):
-        items = value.items()
-    elif isinstance(value, list) and any(isinstance(item, (dict, list)) for item in value):
-        items = enumerate(value)
-    else:
-        return {name: value}
-    return {key: entry for part, item in items for key, entry in flat(item, f"{name}.{part}" if name else part).items()}
 
 
 def change(first, second):
