@@ -17,6 +17,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from isostat import _core
 from isostat.campaign import command
@@ -36,11 +37,11 @@ GRAINS = {"pressure": ("pressure of grains (kPa)", 1e-3), "velocity": ("velocity
 CHAINS = {"normal_force": ("normal force (N)", 1.0)}
 MESH = {"ru": ("r_u (-)", 1.0), "mean_shear_strain": ("shear strain (%)", 1e2),
         "shear_strain": ("shear strain (%)", 1e2),
-        "gamma_xz": ("shear strain xz, magnitude (%)", 1e2)}  # the first that there is
+        "gamma_xz": ("shear strain xz, magnitude (%)", 1e2)}  # the first that there is and is not zero
 NEAR = 1e-4  # relative: of a time as the caption has it, and as it is stored
 SAMPLES = 8  # moments that the range of colours is taken from
 HIGH = 95  # percentile that is its upper end: few carry much more
-TUBE = 0.2  # radius of the tube of a contact with this force, against the mean radius of grains
+TUBE = 0.12  # radius of the tube of a contact with this force, against the mean radius of grains
 ROWS = 3  # of packings
 BOTTOM, TOP = 0.08, 0.94  # of the panels; below is the slider, above the time
 OURS = b"isostat view"  # among the first bytes of its pictures
@@ -105,10 +106,12 @@ class Panel:
         self.renderer, self.moments, self.read = renderer, moments, read
         self.times = np.array([time for time, _ in moments])
         self.shape = read(moments[0][1])
-        points = self.shape.GetPointData()
-        self.field = next((name for name in fields if points.HasArray(name)), points.GetArrayName(0))
-        label, self.scale = fields.get(self.field, (self.field, 1.0))
-        samples = [self.values(read(path)) for _, path in moments[::-(-len(moments) // SAMPLES)]]
+        points, taken = self.shape.GetPointData(), moments[::-(-len(moments) // SAMPLES)]
+        for self.field in [name for name in fields if points.HasArray(name)] or [points.GetArrayName(0)]:
+            label, self.scale = fields.get(self.field, (self.field, 1.0))
+            samples = [self.values(read(path)) for _, path in taken]
+            if any(values.any() for values in samples):  # r_u of dry soil is zero
+                break
         self.high = max([np.percentile(values, HIGH) for values in samples if values.size], default=0) or 1.0
         self.bar = colour_bar(palette, 1.0 if self.field == "ru" else self.high, label)
         renderer.AddActor2D(self.bar)
@@ -195,7 +198,7 @@ def chains_panel(renderer: Any, moments: Moments, aside: pathlib.Path, radius: f
 
 
 def mesh_panel(renderer: Any, moments: Moments, depths: list[float]) -> Panel:
-    """depths: of packings, which get a mark"""
+    """depths: of packings, which get a mark at the right; at the left is a scale of depth"""
     panel = Panel(renderer, moments, reader_of("", pathlib.Path()), MESH, "YlGnBu")
     surface, tubes, mapper = vtk.vtkDataSetSurfaceFilter(), vtk.vtkTubeFilter(), vtk.vtkPolyDataMapper()
     left, right, _, _, bottom, top = panel.shape.GetBounds()
@@ -206,13 +209,20 @@ def mesh_panel(renderer: Any, moments: Moments, depths: list[float]) -> Panel:
     lines = panel.shape.GetCellType(0) == vtk.VTK_LINE
     mapper.SetInputConnection((tubes if lines else surface).GetOutputPort())
     panel.add(mapper).GetProperty().SetEdgeVisibility(not lines)
-    for depth in depths:
+    scale = [depth for depth in MaxNLocator(5).tick_values(0, top - bottom) if depth <= top - bottom]
+    aside = 0.07 * (top - bottom) if lines else 0.0  # of what is drawn around lines
+    marks = [(f"– {depth:g} m", max(right, left + aside), depth) for depth in depths]
+    marks += [(f"{depth:g} m –", left - aside, depth) for depth in scale]
+    for k, (text, x, depth) in enumerate(marks):
         mark = vtk.vtkBillboardTextActor3D()
-        mark.SetInput(f"– {depth:g} m")
-        mark.SetPosition(max(right, left + 0.07 * (top - bottom)), 0, top - depth)
+        mark.SetInput(text)
+        mark.SetPosition(x, 0, top - depth)
         in_ink(mark.GetTextProperty(), 15)
+        mark.GetTextProperty().SetVerticalJustificationToCentered()
+        if k >= len(depths):
+            mark.GetTextProperty().SetJustificationToRight()
         renderer.AddActor(mark)
-    panel.look("z", 0 if right > left else 15, 0.95)
+    panel.look("z", 0 if right > left else 15, 0.84)
     return panel
 
 

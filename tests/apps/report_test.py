@@ -329,11 +329,11 @@ class OtherPrograms(ReportTest):
 
     def test_a_layer_is_described_in_words(self):
         """Whatever its keys are, as words and not as Python has them; a dry one without its permeability."""
-        summary = {"layers": []}
-        table = {"thickness": "5 m", "material": "umat", "permeability": "1e-5 m/s", "permeability_law": "constant", "k0": 0.5,
+        table = {"thickness": "5 m", "material": "umat", "permeability": "1e-5 m/s", "k0": 0.5,
                  "umat": {"library": "sand.so", "props": [80e6, 0.3, 2], "statev": [0]}}
         column = SimpleNamespace(
-            summary=summary, velocities=None, damping={"mass_damping": 0}, scene={"layer": [table], "water": {"drainage": "dry"}},
+            summary={"layers": []}, velocities=None, damping={"mass_damping": 0},
+            scene={"layer": [table], "water": {"drainage": "dry"}},
             layers=[{"height": 5.0, "density": 2000.0, "velocity": None, "name": ""}], water={"gravity": 9.81})
         with mock.patch.object(column_tables.site_response, "site", lambda _: {}):
             text = column_tables.layers(column)

@@ -88,7 +88,8 @@ class Tests(AppTest):
         (self.folder / "empty").mkdir()
         self.write("mine.png", "precious")
         self.write("run/grains.vtkhdf", "precious")
-        self.assert_refused(self.isostat("vtkhdf", "run"), "run/grains.vtkhdf: exists and is not a file of this command")
+        self.assert_refused(self.isostat("vtkhdf", "run"),
+                            "run/grains.vtkhdf: exists and is not a file of this command")
         for command in ("vtkhdf", "view"):  # without a display, too
             for words, said in ((["empty"], "empty: has no stored packings and no mesh. Run it with"),
                                 (["none"], "none: does not exist. Give the results folder of a run"),

@@ -207,8 +207,10 @@ class SoilPointTest(FolderTest):
                            (["--layer", "dense sand"], 2), (["--layer", "none"], 2), (["--vertical-stress", "50"], 2)):
             self.assertEqual(self.run_command(*words, *more).returncode, code, more)
         self.assertEqual(json.loads((folder / "soil_test.json").read_text())["layer"], "loose sand")
-        done = self.run_command("soil-test", COLUMN, "--layer", "loose sand", "--ratios", "0.1", "--no-figures", cwd=self.folder)
-        self.assertTrue((self.folder / "results/recorded_motion_soil_test_loose_sand/summary.txt").is_file(), done.stderr)
+        done = self.run_command("soil-test", COLUMN, "--layer", "loose sand", "--ratios", "0.1", "--no-figures",
+                                cwd=self.folder)
+        left = self.folder / "results/recorded_motion_soil_test_loose_sand/summary.txt"
+        self.assertTrue(left.is_file(), done.stderr)
 
     def run_command(self, *words, **where):
         return subprocess.run([BINARIES / "isostat", *map(str, words)], **where, capture_output=True, text=True,
