@@ -23,14 +23,13 @@ void need_cell(const SceneDocument &document, const SpecimenSpec &specimen, cons
 /// The range of the tests that a sand was compared with.
 void check_sand(const SceneDocument &document, const SandSpec &sand)
 {
-  const auto check = [&](const std::optional<double> &low, const std::optional<double> &high, const char *name) {
-    if (low && high && *low > *high)
-      document.refuse(fmt::format("sand.lowest_{}", name),
-                      fmt::format("must not be above sand.highest_{} ({}). Correct one of them.", name,
-                                  document.where(fmt::format("sand.highest_{}", name))));
+  const auto too_high = [&](const char *other) {
+    return fmt::format("must not be above {} ({}). Correct one of them.", other, document.where(other));
   };
-  check(sand.lowest_pressure, sand.highest_pressure, "pressure");
-  check(sand.lowest_void_ratio, sand.highest_void_ratio, "void_ratio");
+  if (sand.lowest_pressure && sand.highest_pressure && *sand.lowest_pressure > *sand.highest_pressure)
+    document.refuse("sand.lowest_pressure", too_high("sand.highest_pressure"));
+  if (sand.lowest_void_ratio && sand.highest_void_ratio && *sand.lowest_void_ratio > *sand.highest_void_ratio)
+    document.refuse("sand.lowest_void_ratio", too_high("sand.highest_void_ratio"));
 }
 
 /// The limits of the void ratio.
