@@ -83,7 +83,7 @@ def box_maps(column):
         worst = int(np.argmin(mean))
         fields.append(("redundancy", worst, maps["redundancy"][worst], 0, 2, "RdBu", r"$I_R$"))
     across, up = np.ptp(mesh.corners.reshape(-1, 2), axis=0)
-    height = np.clip(6 * up / across + 0.8, 1.6, max(2.2, 6.6 / len(fields)))
+    height = np.clip(6 * up / across + 0.6, 1.6, max(2.2, 6.6 / len(fields)))
     figure, panels = plt.subplots(len(fields), 1, figsize=(7.2, height * len(fields)), layout="constrained",
                                   squeeze=False)
     letters(panels)
