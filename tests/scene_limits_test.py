@@ -17,6 +17,7 @@ STATED = {
     "scene": {
         "specimen.pressure": "a twentieth of the modulus", "specimen.e_min": "Below `e_max`",
         "specimen.consolidation": "in the periodic-cell only; not together with `file`",
+        "sand.lowest_pressure": "at most `highest_pressure`", "sand.lowest_void_ratio": "at most `highest_void_ratio`",
         "specimen.relative_density": "", "motion.drive": "static needs a stage that shears",
         "specimen.file": "", "contact.rolling": "Needs `friction`", "contact.twisting": "Needs `friction`",
         "stage.friction": "Above 0 deg only where", "stage.stages": "At most as many as there are",

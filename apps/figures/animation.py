@@ -20,6 +20,9 @@ from .column_results import Column
 from .column_soil import depth_axis, pore_pressure_ratio
 from .command_line import CommandLine
 from .common import BLACK, BLUE, GREY, BadInput, Run, note, plt, use_style
+from .files import check_results, check_target
+
+DEFAULT = "figures/animation.gif"
 
 
 class TestFrames:
@@ -81,16 +84,18 @@ class ColumnFrames:
 
 def animate(folder, out, rate):
     """Writes it.   Raises BadInput where there is nothing to show, or no program for this kind of file"""
-    frames = (ColumnFrames if (folder / "grains").is_dir() else TestFrames)(folder)
-    if not frames.length:
+    check_results(folder)
+    kinds = {"grains/d*.pvd": ColumnFrames, "snapshots/snapshot_*.h5": TestFrames}
+    frames = next((kind(folder) for pattern, kind in kinds.items() if any(folder.glob(pattern))), None)
+    if not frames or not frames.length:
         raise BadInput(f"{folder}: has no two moments of stored packings. Run it with output.snapshots = \"strain\", a "
                        "column with grains.snapshot_depths and a shorter grains.snapshot_interval.")
-    name = {".gif": "pillow", ".mp4": "ffmpeg"}.get(out.suffix)
-    if not name:
-        raise BadInput(f"{out}: must end with .gif or .mp4")
+    if out == folder / DEFAULT:
+        out.parent.mkdir(exist_ok=True)
+    check_target(out, {".gif": b"GIF8", ".mp4": b"ftyp"})
+    name = {".gif": "pillow", ".mp4": "ffmpeg"}[out.suffix]
     if not animation.writers.is_available(name):
         raise BadInput(f"{out}: needs {name}: apt-get install {'python3-pil' if name == 'pillow' else name}")
-    out.parent.mkdir(parents=True, exist_ok=True)
     use_style()
     figure = plt.figure(figsize=(7.2, 3.4), layout="constrained")
     frames.begin(figure)
@@ -107,7 +112,7 @@ def main():
     line.add_argument("--rate", type=float, default=4, help="frames per second (default: 4)")
     options = line.parse_args()
     matplotlib.use("Agg")
-    out = options.output or options.results / "figures/animation.gif"
+    out = options.output or options.results / DEFAULT
     try:
         if not options.rate > 0:
             raise BadInput(f"--rate = {options.rate:g}; must be > 0, frames per second.")

@@ -82,14 +82,17 @@ def box_maps(column):
         mean = np.nanmean(maps["redundancy"], axis=1)
         worst = int(np.argmin(mean))
         fields.append(("redundancy", worst, maps["redundancy"][worst], 0, 2, "RdBu", r"$I_R$"))
-    figure, panels = plt.subplots(len(fields), 1, figsize=(7.2, 2.2 * len(fields)), layout="constrained", squeeze=False)
+    across, up = np.ptp(mesh.corners.reshape(-1, 2), axis=0)
+    height = np.clip(6 * up / across + 0.6, 1.6, max(2.2, 6.6 / len(fields)))
+    figure, panels = plt.subplots(len(fields), 1, figsize=(7.2, height * len(fields)), layout="constrained",
+                                  squeeze=False)
     letters(panels)
     for (_, row, values, low, high, colours, label), axes in zip(fields, panels[:, 0]):
         elements = mesh.show(axes, row, values, low, high, colours)
         figure.colorbar(elements, ax=axes, label=label, fraction=0.03, pad=0.01,
                         extend=cut_ends(mesh.means(values), low, high))
-        axes.set_title(f"t = {maps['time'][row]:.4g} s, displacements drawn {mesh.exaggeration:g} times", fontsize=8.5,
-                       loc="right")
+        axes.annotate(f"t = {maps['time'][row]:.4g} s, displacements drawn {mesh.exaggeration:g} times", (1, 1), (0, 4),
+                      "axes fraction", "offset points", ha="right", va="bottom", fontsize=8.5)
     panels[-1, 0].set_xlabel("x (m)")
     return figure
 

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
-from .files import NOT_SHEARED, Damaged, read_parsed
+from .files import NOT_SHEARED, BadInput, Damaged, read_parsed
 
 LIQUEFIED = 0.01  # p'/p0' below which a specimen counts as liquefied, unless its scene says otherwise
 FLOOR = 1e-4  # lowest p'/p0' that is drawn
@@ -52,10 +52,6 @@ def use_style():
     """Ours alone: a matplotlibrc of the user, or one where Python started, does not count."""
     plt.rcdefaults()
     plt.rcParams.update(STYLE)
-
-
-class BadInput(Exception):
-    """The folder holds no history that can be drawn."""
 
 
 def note(text):

@@ -25,6 +25,39 @@ def replacing(path):
         aside.unlink(missing_ok=True)
 
 
+class BadInput(Exception):
+    """What was given is not what a command or a figure can be made of."""
+
+
+def check_results(folder):
+    """Raises BadInput where there is no folder."""
+    if not folder.is_dir():
+        what = "is a file, not a results folder" if folder.exists() else "does not exist"
+        raise BadInput(f"{folder}: {what}. Give the results folder of a run.")
+
+
+def check_target(path, beginnings, option="--output"):
+    """Raises BadInput where a file cannot be written, or would replace one that its command has not written.
+
+    beginnings   {ending: bytes that are among the first 1000 of such a file}
+    option       that names the file
+    """
+    if path.suffix not in beginnings:
+        raise BadInput(f"{path}: must end with {' or '.join(beginnings)}.")
+    folder = path.absolute().parent
+    if path.is_dir() or not folder.is_dir():
+        what = "is a folder" if path.is_dir() else f"there is no folder {folder}"
+        raise BadInput(f"{path}: cannot be written: {what}. Give a file in a folder that exists with {option}.")
+    if not path.exists():
+        return
+    ours = path.is_file()
+    if ours:
+        with open(path, "rb") as file:
+            ours = beginnings[path.suffix] in file.read(1000)
+    if not ours:
+        raise BadInput(f"{path}: exists and is not a file of this command. Give another {option}, or move it away.")
+
+
 class Damaged(ValueError):
     """A file that is not what a run left; the message has the place, what is wrong and what to do."""
 

@@ -11,8 +11,8 @@ import sys
 
 from .column_results import Column, quantity
 from .command_line import CommandLine
-from .common import BadInput
-from .site_response import write_at2
+from .files import BadInput, check_results, check_target
+from .site_response import BEGINNING, write_at2
 
 PLACES = ("surface", "input", "within")
 LENGTHS = ("m", "cm", "mm")
@@ -36,10 +36,12 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, help="default: RESULTS/PLACE_AXIS.at2")
     words = parser.parse_args()
     try:
+        check_results(words.results)
         path = words.output or words.results / f"{words.at.replace(' ', '')}_{words.axis}.at2"
+        check_target(path, {".at2": BEGINNING.encode()})
         write_at2(Column(words.results), path, place(words.at), words.axis)
     except (BadInput, OSError) as error:
-        print(f"error: {error}.", file=sys.stderr)
+        print(f"error: {str(error).rstrip('.')}.", file=sys.stderr)
         return 2
     except ValueError:
         print(f"error: --at {words.at}: must be {', '.join(PLACES)} or a depth with its unit ({', '.join(LENGTHS)}), "

@@ -9,7 +9,8 @@ from .common import BadInput
 GRAVITY = 9.80665
 HUSID = (0.05, 0.95)  # shares of the Arias intensity between which the significant duration is
 LIQUEFYING = 0.5  # r_u from which on soil has no frequency of its own, as the CSR of profile.csv has it for stress
-A_LINE = 5  # accelerations in a line of an AT2 file
+BEGINNING = "ISOSTAT SITE RESPONSE ANALYSIS"  # of an AT2 file
+A_LINE = 5  # accelerations in a line of it
 
 
 def input_name(column):
@@ -55,7 +56,7 @@ def write_at2(column, path, where="surface", axis="x"):
     a, dt = motion(column, where, axis)
     words = [f"{value:17.9E}" for value in np.asarray(a) / GRAVITY]
     lines = ["".join(words[k:k + A_LINE]) for k in range(0, len(words), A_LINE)]
-    header = ["ISOSTAT SITE RESPONSE ANALYSIS", f"{where}, {axis}".upper(), "ACCELERATION TIME SERIES IN UNITS OF G",
+    header = [BEGINNING, f"{where}, {axis}".upper(), "ACCELERATION TIME SERIES IN UNITS OF G",
               f"NPTS= {len(words)}, DT= {dt:.10g} SEC"]
     path.write_text("\n".join([*header, *lines, ""]), encoding="ascii")
 

@@ -32,6 +32,9 @@ def draw_resistance(axes, resistance, summary):
     if len(ratio):
         axes.set_ylim(0, 1.3 * max(ratio))
         axes.legend()
+    if not np.isfinite(n).any():
+        axes.text(0.5, 0.5, "does not liquefy", transform=axes.transAxes, ha="center", va="center")
+        axes.set_axis_off()
 
 
 def draw_path(axes, path, summary):

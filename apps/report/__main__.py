@@ -14,9 +14,10 @@ try:
     import matplotlib
 
     from figures.command_line import CommandLine
+    from figures.files import BadInput
 
     from . import run
-    from .folder import NUMBERS, NoResults, find_results
+    from .folder import NUMBERS, find_results
 except ModuleNotFoundError as missing:
     if missing.name not in ("matplotlib", "numpy", "h5py"):
         raise
@@ -53,7 +54,7 @@ def main():
             return run.leave(arguments.results, find_results(arguments.results).program)
         from . import compare  # pylint: disable=import-outside-toplevel  (a run does not need it)
         return compare.leave(arguments.first, arguments.second, arguments.output)
-    except NoResults as error:
+    except BadInput as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
 

@@ -2,14 +2,18 @@
 """Tables of the report of a soil column: its layers, the site, motions, resistance to liquefaction.
 
 tested: tests/apps/site_response_test.py"""
+import re
+
 import numpy as np
 
 from figures import site_response
 
 from . import html
+from .quantities import flat, shown
 
 # Keys of a layer that have a column of their own, or describe the mesh.
 ELSEWHERE = {"name", "thickness", "cells", "cell_size", "density", "material", "shear_velocity", "shear_modulus"}
+OF_WATER = {"permeability", "permeability_law", "saturation"}
 
 ABOUT_SAFETY = (
     "CSR is 0.65 of the largest shear stress over σ'_v0, until r_u of the point reaches 0.5: later stress is that of "
@@ -54,11 +58,12 @@ def damping(column, k):
 def layers(column):
     """A row for each layer, from the surface down."""
     ends, rows, parameters = np.cumsum([0.0, *(layer["height"] for layer in column.layers)]), [], []
+    unused = ELSEWHERE | (OF_WATER if column.scene.get("water", {}).get("drainage") == "dry" else set())
     for k, table in enumerate(column.scene.get("layer", [])):
         used = said_of(column, k).get("sand", {})  # by its density
-        given = ", ".join(f"{key.replace('_', ' ')} {value:.4g}" if key in used else f"{key.replace('_', ' ')} {value}"
-                          for key, value in (table | used).items()
-                          if key not in ELSEWHERE and not (key == "strength_ratio" and "shear_strength" in table))
+        given = ", ".join(f"{re.sub('[_.]', ' ', key)} {f'{value:.4g}' if key in used else shown(value)}"
+                          for key, value in flat(table | used).items()
+                          if key not in unused and not (key == "strength_ratio" and "shear_strength" in table))
         weight = column.layers[k]["density"] * column.water["gravity"] / 1e3
         rows.append((name_of(table, k), f"{ends[k]:.4g} to {ends[k + 1]:.4g}", f"{column.layers[k]['height']:.4g}",
                      f"{weight:.4g}", speeds(column, k), damping(column, k), table["material"].replace("_", "-")))

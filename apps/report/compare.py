@@ -3,24 +3,14 @@
 import re
 
 from figures.common import BadInput, plt, use_style
+from figures.files import check_target
 
 from . import compare_curves, html
 from .folder import NUMBERS, NoResults, find_results
-from .quantities import converted, is_number, named, shown
+from .quantities import converted, flat, is_number, named, shown
 
 SAME = 1e-12  # relative difference of numbers that are written with all digits: the same
 NAMES = "AB"
-
-
-def flat(value, name=""):
-    """{"layers.0.density": 1900, ...} of nested tables and lists; a list of plain values is one entry."""
-    if isinstance(value, dict):
-        items = value.items()
-    elif isinstance(value, list) and any(isinstance(item, (dict, list)) for item in value):
-        items = enumerate(value)
-    else:
-        return {name: value}
-    return {key: entry for part, item in items for key, entry in flat(item, f"{name}.{part}" if name else part).items()}
 
 
 def change(first, second):
@@ -127,13 +117,10 @@ def page(pair):
 
 
 def leave(first, second, output):
-    """Writes the comparison of two results folders.   Raises NoResults"""
+    """Writes the comparison of two results folders.   Raises BadInput"""
     pair = find_results(first), find_results(second)
     check(pair)
-    if output.is_dir() or not output.absolute().parent.is_dir():
-        raise NoResults(f"{output}: cannot be written. Give a file in a folder that exists with --output.")
-    if output.exists() and not (output.is_file() and html.GENERATOR.encode() in output.read_bytes()[:1000]):
-        raise NoResults(f"{output}: exists and is not a page of Isostat. Give another --output, or move it away.")
+    check_target(output, {output.suffix: html.GENERATOR.encode()})
     text = page(pair)
     try:
         html.write_replacing(output, text)

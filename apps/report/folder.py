@@ -3,7 +3,7 @@
 import re
 import tomllib
 
-from figures.files import Damaged, read_parsed
+from figures.files import BadInput, Damaged, check_results, read_parsed
 
 # The file with the numbers of a program's summary; it is written last, so a run that has it is finished. A biaxial
 # block is a run of soil_column.
@@ -16,7 +16,7 @@ TOLD_BY_FILE = ("micromechanics", "resistance", "soil_test", "calibrate", "colum
 IN_PYTHON = {"isostat.run()": "element_test", "isostat.column.run()": "soil_column"}  # whose files they leave
 
 
-class NoResults(Exception):
+class NoResults(BadInput):
     """The folder is not what it was taken for; the message says what to do."""
 
 
@@ -77,9 +77,8 @@ class Results:
 
 
 def find_results(path):
-    """The results in a folder, of the program that its provenance names.   Raises NoResults"""
-    if not path.is_dir():
-        raise NoResults(f"{path}: there is no such folder. Give the results folder of a run.")
+    """The results in a folder, of the program that its provenance names.   Raises BadInput"""
+    check_results(path)
     for program in TOLD_BY_FILE:
         if (path / NUMBERS[program]).is_file():
             return Results(path, program)

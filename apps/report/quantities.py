@@ -49,6 +49,17 @@ SHOWN = {
 IN_SI = ("_deg", "_m", "_Pa")  # ends of names that give the unit in the file
 
 
+def flat(value, name=""):
+    """{"layers.0.density": 1900, ...} of nested tables and lists; a list of plain values is one entry."""
+    if isinstance(value, dict):
+        items = value.items()
+    elif isinstance(value, list) and any(isinstance(item, (dict, list)) for item in value):
+        items = enumerate(value)
+    else:
+        return {name: value}
+    return {key: entry for part, item in items for key, entry in flat(item, f"{name}.{part}" if name else part).items()}
+
+
 def is_number(value):
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
@@ -70,4 +81,6 @@ def converted(program, name, value):
 def shown(value):
     if value is None:
         return "-"
+    if isinstance(value, list):
+        return f"[{', '.join(shown(entry) for entry in value)}]"
     return f"{value:.6g}" if isinstance(value, float) else str(value)

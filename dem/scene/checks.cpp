@@ -20,6 +20,18 @@ void need_cell(const SceneDocument &document, const SpecimenSpec &specimen, cons
                                       specimen.domain, document.where("specimen.domain"), otherwise));
 }
 
+/// The range of the tests that a sand was compared with.
+void check_sand(const SceneDocument &document, const SandSpec &sand)
+{
+  const auto too_high = [&](const char *other) {
+    return fmt::format("must not be above {} ({}). Correct one of them.", other, document.where(other));
+  };
+  if (sand.lowest_pressure && sand.highest_pressure && *sand.lowest_pressure > *sand.highest_pressure)
+    document.refuse("sand.lowest_pressure", too_high("sand.highest_pressure"));
+  if (sand.lowest_void_ratio && sand.highest_void_ratio && *sand.lowest_void_ratio > *sand.highest_void_ratio)
+    document.refuse("sand.lowest_void_ratio", too_high("sand.highest_void_ratio"));
+}
+
 /// The limits of the void ratio.
 void check_limits(const SceneDocument &document, const SpecimenSpec &specimen)
 {
@@ -157,6 +169,7 @@ void check_drive(const SceneDocument &document, const Scene &scene)
 void check_scene(const SceneDocument &document, Scene &scene)
 {
   check_groups(document, scene);
+  check_sand(document, scene.sand);
   check_specimen(document, scene.specimen);
   check_contact(document, scene);
   check_pressure(document, scene);

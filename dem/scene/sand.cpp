@@ -35,12 +35,12 @@ constexpr Key keys[] = {
    .range = not_negative, .text = "The same of tests that were not fitted."},
   {.path = "lowest_pressure", .field = member<&SandSpec::lowest_pressure>, .unit = unit::kPa,
    .presence = Presence::optional, .value = "100 kPa", .range = stresses, .reason = because_stresses,
-   .text = "Least p0' of these tests. A run outside of this range, or of those below, gets a warning."},
+   .text = "Least p0' of these tests, at most `highest_pressure`. A run outside of this range, or of those below, gets a warning."},
   {.path = "highest_pressure", .field = member<&SandSpec::highest_pressure>, .unit = unit::kPa,
    .presence = Presence::optional, .value = "200 kPa", .range = stresses, .reason = because_stresses,
    .text = "Largest p0' of these tests."},
   {.path = "lowest_void_ratio", .field = member<&SandSpec::lowest_void_ratio>, .presence = Presence::optional,
-   .value = "0.6", .range = positive, .text = "Least void ratio of the packings at the start of these tests."},
+   .value = "0.6", .range = positive, .text = "Least void ratio of the packings at the start of these tests, at most `highest_void_ratio`."},
   {.path = "highest_void_ratio", .field = member<&SandSpec::highest_void_ratio>, .presence = Presence::optional,
    .value = "0.8", .range = positive, .text = "Largest void ratio of the packings at the start of these tests."},
   {.path = "largest_strain", .field = member<&SandSpec::largest_strain>, .presence = Presence::optional,
@@ -65,14 +65,15 @@ fs::path installed_sand(const SceneDocument &document, const std::string &name)
                           names.empty() ? "none in " + folder.string() : fmt::format("{}", fmt::join(names, ", "))));
 }
 
-/// "100 to 200 kPa"; empty: the value is within.
+/// "100 to 200 kPa", "up to 200 kPa"; empty: the value is within.
 std::string range_left(double value, std::optional<double> low, std::optional<double> high, double unit,
                        const char *name)
 {
   if (value >= low.value_or(value) * (1 - 1e-9) && value <= high.value_or(value) * (1 + 1e-9))
     return "";
-  const auto text = [&](std::optional<double> x) { return x ? fmt::format("{:g}", *x / unit) : "any"; };
-  return fmt::format("{} to {}{}", text(low), text(high), name);
+  if (!low || !high)
+    return fmt::format("{} {:g}{}", low ? "from" : "up to", (low ? *low : *high) / unit, name);
+  return fmt::format("{:g} to {:g}{}", *low / unit, *high / unit, name);
 }
 
 std::string beyond(const SandSpec &sand, const std::string &what, const std::string &range)

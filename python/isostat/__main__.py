@@ -30,7 +30,7 @@ VIEWS = {"compare": "A B [-o FILE]: two runs of one kind side by side, in one HT
          "view": "RESULTS [--picture FILE.png]: grains, force chains and mesh to look at and turn, with a slider for time",
          "vtkhdf": "RESULTS: grains, force chains and mesh over time for ParaView, one file each",
          "report": "RESULTS: draw figures and report.html of a results folder again, also during its run"}
-SANDS = {"sands": "[FILE ...]: the sands that scenes can take, with the range and the misfit of each"}
+SANDS = {"sands": "[NAME or FILE ...]: the sands that scenes can take, with the range and the misfit of each"}
 PACKINGS = {"convert": "IN OUT: a packing of LAMMPS, YADE, CSV, ParaView or Isostat as another of these"}
 PROGRAMS = {"element_test": "one test on spheres: triaxial or simple shear, drained or undrained",
             "void_ratio_limits": "loosest and densest packing of a grading",

@@ -6,13 +6,18 @@ from isostat import _core
 from isostat.campaign import command
 from isostat.scene import Scene
 
+FOLDER = command.SCENES / "scenes/sands"
+
 
 def described(file: pathlib.Path) -> str:
     """Range, misfits and origin of a sand in a few lines.   Raises InputError"""
-    sand = Scene({"sand": str(file.absolute()), "specimen": {"preparation_friction": "10 deg"}}).to_dict()["sand"]
+    own = file.suffix == ".toml"
+    sand = Scene({"sand": str(file.absolute() if own else file), "specimen": {"preparation_friction": "10 deg"}}).to_dict()["sand"]
 
     def span(low, high):
-        return f"{sand.get(low, 'any')} to {sand.get(high, 'any')}"
+        if low in sand and high in sand:
+            return f"{sand[low]} to {sand[high]}"
+        return f"from {sand[low]}" if low in sand else f"up to {sand[high]}" if high in sand else "any"
 
     return (f"{sand['name']}\n"
             f"  misfit           fitted {sand.get('misfit', 'unknown')}, not fitted {sand.get('blind_misfit', 'unknown')}\n"
@@ -21,20 +26,19 @@ def described(file: pathlib.Path) -> str:
             f"  axial strain     to {sand.get('largest_strain', 'any')}\n"
             f"  tests            {sand.get('tests', 'unknown')}\n"
             f"  source           {sand.get('source', 'unknown')}\n"
-            f"  file             {file}\n")
+            f"  file             {file if own else FOLDER / f'{file}.toml'}\n")
 
 
 def list_sands(files: list[pathlib.Path]) -> None:
-    folder = command.SCENES / "scenes/sands"
-    files = files or sorted(folder.glob("*.toml"))
+    files = files or sorted(FOLDER.glob("*.toml"))
     if not files:
-        raise _core.InputError(f"{folder}: there are no sands in this installation. Give a file: isostat sands my_sand.toml.")
+        raise _core.InputError(f"{FOLDER}: there are no sands in this installation. Give a file: isostat sands my_sand.toml.")
     print("\n".join(described(file) for file in files), end="")
 
 
 def main(words: list[str]) -> int:
     line = command.line_of("sands", "The sands that scenes can take (sand = \"NAME\"), with the range in which each was compared "
                            "with tests and its misfits")
-    line.add_argument("files", metavar="FILE", nargs="*", type=pathlib.Path, help="sands of your own (default: the installed)")
+    line.add_argument("files", metavar="SAND", nargs="*", type=pathlib.Path, help="names of sands, or files of your own (default: the installed)")
     options = line.parse_args(words)
     return command.run(lambda: list_sands(options.files))

@@ -17,12 +17,13 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from isostat import _core
 from isostat.campaign import command
 from isostat.figures.column_results import quantity
-from isostat.figures.common import BadInput, Run
-from isostat.figures.files import Damaged, read_parsed
+from isostat.figures.common import Run
+from isostat.figures.files import check_results, check_target, read_parsed
 from isostat.vtkhdf import Moments, draw, meshes, nothing_stored, packings
 
 try:
@@ -36,12 +37,14 @@ GRAINS = {"pressure": ("pressure of grains (kPa)", 1e-3), "velocity": ("velocity
 CHAINS = {"normal_force": ("normal force (N)", 1.0)}
 MESH = {"ru": ("r_u (-)", 1.0), "mean_shear_strain": ("shear strain (%)", 1e2),
         "shear_strain": ("shear strain (%)", 1e2),
-        "gamma_xz": ("shear strain xz, magnitude (%)", 1e2)}  # the first that there is
+        "gamma_xz": ("shear strain xz, magnitude (%)", 1e2)}  # the first that there is and is not zero
+NEAR = 1e-4  # relative: of a time as the caption has it, and as it is stored
 SAMPLES = 8  # moments that the range of colours is taken from
 HIGH = 95  # percentile that is its upper end: few carry much more
-TUBE = 0.2  # radius of the tube of a contact with this force, against the mean radius of grains
+TUBE = 0.12  # radius of the tube of a contact with this force, against the mean radius of grains
 ROWS = 3  # of packings
 BOTTOM, TOP = 0.08, 0.94  # of the panels; below is the slider, above the time
+OURS = b"isostat view"  # among the first bytes of its pictures
 MM = 1e3  # unit of packings: VTK makes flat tubes of lengths as small as those in m
 
 
@@ -103,10 +106,12 @@ class Panel:
         self.renderer, self.moments, self.read = renderer, moments, read
         self.times = np.array([time for time, _ in moments])
         self.shape = read(moments[0][1])
-        points = self.shape.GetPointData()
-        self.field = next((name for name in fields if points.HasArray(name)), points.GetArrayName(0))
-        label, self.scale = fields.get(self.field, (self.field, 1.0))
-        samples = [self.values(read(path)) for _, path in moments[::-(-len(moments) // SAMPLES)]]
+        points, taken = self.shape.GetPointData(), moments[::-(-len(moments) // SAMPLES)]
+        for self.field in [name for name in fields if points.HasArray(name)] or [points.GetArrayName(0)]:
+            label, self.scale = fields.get(self.field, (self.field, 1.0))
+            samples = [self.values(read(path)) for _, path in taken]
+            if any(values.any() for values in samples):  # r_u of dry soil is zero
+                break
         self.high = max([np.percentile(values, HIGH) for values in samples if values.size], default=0) or 1.0
         self.bar = colour_bar(palette, 1.0 if self.field == "ru" else self.high, label)
         renderer.AddActor2D(self.bar)
@@ -193,7 +198,7 @@ def chains_panel(renderer: Any, moments: Moments, aside: pathlib.Path, radius: f
 
 
 def mesh_panel(renderer: Any, moments: Moments, depths: list[float]) -> Panel:
-    """depths: of packings, which get a mark"""
+    """depths: of packings, which get a mark at the right; at the left is a scale of depth"""
     panel = Panel(renderer, moments, reader_of("", pathlib.Path()), MESH, "YlGnBu")
     surface, tubes, mapper = vtk.vtkDataSetSurfaceFilter(), vtk.vtkTubeFilter(), vtk.vtkPolyDataMapper()
     left, right, _, _, bottom, top = panel.shape.GetBounds()
@@ -204,13 +209,20 @@ def mesh_panel(renderer: Any, moments: Moments, depths: list[float]) -> Panel:
     lines = panel.shape.GetCellType(0) == vtk.VTK_LINE
     mapper.SetInputConnection((tubes if lines else surface).GetOutputPort())
     panel.add(mapper).GetProperty().SetEdgeVisibility(not lines)
-    for depth in depths:
+    scale = [depth for depth in MaxNLocator(5).tick_values(0, top - bottom) if depth <= top - bottom]
+    aside = 0.07 * (top - bottom) if lines else 0.0  # of what is drawn around lines
+    marks = [(f"– {depth:g} m", max(right, left + aside), depth) for depth in depths]
+    marks += [(f"{depth:g} m –", left - aside, depth) for depth in scale]
+    for k, (text, x, depth) in enumerate(marks):
         mark = vtk.vtkBillboardTextActor3D()
-        mark.SetInput(f"– {depth:g} m")
-        mark.SetPosition(max(right, left + 0.07 * (top - bottom)), 0, top - depth)
+        mark.SetInput(text)
+        mark.SetPosition(x, 0, top - depth)
         in_ink(mark.GetTextProperty(), 15)
+        mark.GetTextProperty().SetVerticalJustificationToCentered()
+        if k >= len(depths):
+            mark.GetTextProperty().SetJustificationToRight()
         renderer.AddActor(mark)
-    panel.look("z", 0 if right > left else 15, 0.95)
+    panel.look("z", 0 if right > left else 15, 0.84)
     return panel
 
 
@@ -219,8 +231,6 @@ class Window:
 
     def __init__(self, folder: pathlib.Path, aside: pathlib.Path, colour: str) -> None:
         taken, drawn = packings(folder), meshes(folder)
-        if not taken and not drawn:
-            raise nothing_stored(folder)
         self.run = Run(folder) if "" in taken else None
         self.strained = any(path.name == "block.pvd" for path in drawn)  # the time of a block is its strain
         scene = read_parsed(folder / "scene.toml", tomllib.loads)
@@ -266,6 +276,7 @@ class Window:
         picture.ReadFrontBufferOff()
         writer.SetInputConnection(picture.GetOutputPort())
         writer.WriteToMemoryOn()
+        writer.AddText("Software", OURS.decode())
         writer.Write()
         path.write_bytes(vtk_to_numpy(writer.GetResult()).tobytes())
 
@@ -309,8 +320,24 @@ class Window:
             sleep(0.01)
 
 
-def view(folder: pathlib.Path, picture: pathlib.Path | None, time: float | None, colour: str) -> None:
+def check(folder: pathlib.Path, picture: pathlib.Path | None, time: float | None, colour: str | None) -> None:
+    """Raises BadInput or InputError where there is nothing to show, or no place for the picture."""
+    check_results(folder)
+    if picture:
+        check_target(picture, {".png": OURS}, "--picture")
+    taken, drawn = packings(folder), meshes(folder)
+    if not taken and not drawn:
+        raise nothing_stored(folder)
+    if colour and not taken:
+        raise _core.InputError(f"{folder}: has no stored packings, so --colour {colour} has no grains to colour.")
+    times = [stored for moments in [*taken.values(), *drawn.values()] for stored, _ in moments]
+    if time is not None and not min(times) * (1 - NEAR) <= time <= max(times) * (1 + NEAR):
+        raise _core.InputError(f"--time {time:g}: {folder} has stored moments from {min(times):.6g} to {max(times):.6g}.")
+
+
+def view(folder: pathlib.Path, picture: pathlib.Path | None, time: float | None, colour: str | None) -> None:
     """Raises InputError where there is nothing to show, or nothing to show it with."""
+    check(folder, picture, time, colour)
     if vtk is None:
         raise _core.InputError("isostat view: needs VTK for this Python: apt-get install python3-vtk9. isostat "
                                "animate does without it.")
@@ -322,19 +349,17 @@ def view(folder: pathlib.Path, picture: pathlib.Path | None, time: float | None,
             raise _core.InputError("isostat view: a picture without a display needs xvfb: apt-get install xvfb xauth")
         os.execvp("xvfb-run", ["xvfb-run", "-a", *sys.orig_argv])
     with tempfile.TemporaryDirectory() as aside:
-        try:
-            window = Window(folder, pathlib.Path(aside), colour)
-            time = window.times[-1] if time is None else time
-            window.window.SetOffScreenRendering(bool(picture))
-            window.window.SetMultiSamples(8)
-            window.show(time)
-            if picture:
-                window.save(picture)
-                print(picture)
-            else:
-                window.open(time)
-        except (BadInput, Damaged) as error:
-            raise _core.InputError(str(error)) from error
+        window = Window(folder, pathlib.Path(aside), colour or "pressure")
+        shown = len(window.times) if time is None else np.searchsorted(window.times, time * (1 + NEAR), "right")
+        time = window.times[max(shown - 1, 0)]
+        window.window.SetOffScreenRendering(bool(picture))
+        window.window.SetMultiSamples(8)
+        window.show(time)
+        if picture:
+            window.save(picture)
+            print(picture)
+        else:
+            window.open(time)
 
 
 def main(words: list[str]) -> int:
@@ -347,7 +372,7 @@ def main(words: list[str]) -> int:
                       "window; without a display it needs xvfb")
     line.add_argument("--time", metavar="SECONDS", type=float, help="begin at this time, of a block at this axial "
                       "strain (default: the end)")
-    line.add_argument("--colour", choices=tuple(GRAINS), default="pressure", help="of grains (default: pressure, the "
+    line.add_argument("--colour", choices=tuple(GRAINS), help="of grains (default: pressure, the "
                       "mean stress from contact forces)")
     asked = line.parse_args(words)
     return command.run(lambda: view(asked.results, asked.picture, asked.time, asked.colour))

@@ -17,7 +17,7 @@ import numpy as np
 
 from isostat import _core
 from isostat.campaign import command
-from isostat.figures.files import replacing
+from isostat.figures.files import check_results, check_target, replacing
 from isostat.packings.vtp import Arrays
 
 Moments = list[tuple[float, pathlib.Path]]  # time in s, file
@@ -132,9 +132,11 @@ def convert(folder: pathlib.Path) -> None:
 
     Raises InputError if it has stored nothing.
     """
+    check_results(folder)
     target = None
     with tempfile.TemporaryDirectory() as aside:
         for target, kind, moments in films(folder, pathlib.Path(aside)):
+            check_target(target, {".vtkhdf": b"HDF"})
             with replacing(target) as path, h5py.File(path, "w") as file:
                 writer = Writer(file, kind)
                 for time, moment in moments:

@@ -34,12 +34,18 @@ class Animations(AppTest):
 
     def test_what_it_refuses(self):
         fixture.packings(self.folder / "run")
+        self.write("mine.gif", "precious")
         for words, said in ((("run", "-o", "film.avi"), "film.avi: must end with .gif or .mp4"),
                             (("run", "--rate", "0"), "--rate = 0; must be > 0"),
-                            (("nowhere",), "nowhere/history.csv: No such file")):
+                            (("run", "-o", "none/film.gif"), "none/film.gif: cannot be written: there is no folder"),
+                            (("run", "-o", "mine.gif"), "mine.gif: exists and is not a file of this command"),
+                            (("film.avi", "run"), "unrecognized arguments"),
+                            (("mine.gif",), "mine.gif: is a file, not a results folder"),
+                            (("nowhere",), "nowhere: does not exist. Give the results folder")):
             result = self.animate(*words)
             self.assertEqual(result.returncode, 2)
             self.assertIn(said, result.stderr)
         self.assertFalse((self.folder / "nowhere").exists())
+        self.assertEqual((self.folder / "mine.gif").read_text(), "precious")
         (self.folder / "run/grains/d0.pvd").unlink()
         self.assertIn("run: has no two moments of stored packings. Run it with", self.animate("run").stderr)

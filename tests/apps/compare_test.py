@@ -10,11 +10,10 @@ import shutil
 import numpy as np
 from matplotlib.colors import to_rgb
 
-from figures.common import Run, plt
+from figures.common import BadInput, Run, plt
 from report import compare
 from report.compare import change, flat
 from report.compare_curves import LINES, caption_of_test, numbers_of_test, stress_curves
-from report.folder import NoResults
 from report.quantities import SHOWN, converted, is_number, named
 from report_support import SCENES, ReportTest
 from support import BIN, CYCLIC, columns, contents
@@ -133,7 +132,7 @@ class Compare(ReportTest):
         plt.close(figure)
 
     def refuse(self, first, second, *parts, output="compare.html"):
-        with self.assertRaises(NoResults) as caught:
+        with self.assertRaises(BadInput) as caught:
             self.compare(first, second, output)
         for part in parts:
             self.assertIn(part, str(caught.exception))
@@ -141,7 +140,7 @@ class Compare(ReportTest):
 
     def test_no_results(self):
         self.assert_refused(self.run_app("isostat", "compare", self.runs / "one", "nowhere"), "nowhere",
-                            "no such folder", "results folder of a run")
+                            "does not exist", "results folder of a run")
         self.refuse(self.folder, self.runs / "one", "is not a results folder", "provenance.txt")
 
     def test_unfinished(self):
@@ -164,5 +163,5 @@ class Compare(ReportTest):
         os.mkfifo(self.folder / "pipe")
         for name in ("thesis.tex", "pipe"):
             self.refuse(self.runs / "one", self.runs / "other",
-                        f"{name}: exists and is not a page of Isostat. Give another --output", output=name)
+                        f"{name}: exists and is not a file of this command. Give another --output", output=name)
         self.assertEqual((self.folder / "thesis.tex").read_text(encoding="utf-8"), "precious")

@@ -10,12 +10,14 @@ import shutil
 import subprocess
 import tomllib
 import unittest
+from types import SimpleNamespace
+from unittest import mock
 
 from figures import element_test, soil_column
 from figures.__main__ import PROGRAMS
 from figures.common import plt
 from figures.files import Damaged, read_parsed
-from report import narrow
+from report import column_tables, narrow
 from report.folder import NoResults, find_results
 from report.run import calls
 from report_support import SCENES, ReportTest, page
@@ -324,6 +326,21 @@ class OtherPrograms(ReportTest):
     def test_shaken(self):
         self.make("soil_column", "shaken", SCENES / "column/recorded_motion.toml", "--set", "analysis.duration=1 s")
         self.assertIn("iquefied:", self.assert_whole("shaken"))
+
+    def test_a_layer_is_described_in_words(self):
+        """Whatever its keys are, as words and not as Python has them; a dry one without its permeability."""
+        table = {"thickness": "5 m", "material": "umat", "permeability": "1e-5 m/s", "k0": 0.5,
+                 "umat": {"library": "sand.so", "props": [80e6, 0.3, 2], "statev": [0]}}
+        column = SimpleNamespace(
+            summary={"layers": []}, velocities=None, damping={"mass_damping": 0},
+            scene={"layer": [table], "water": {"drainage": "dry"}},
+            layers=[{"height": 5.0, "density": 2000.0, "velocity": None, "name": ""}], water={"gravity": 9.81})
+        with mock.patch.object(column_tables.site_response, "site", lambda _: {}):
+            text = column_tables.layers(column)
+            self.assertIn("k0 0.5, umat library sand.so, umat props [8e+07, 0.3, 2], umat statev [0]<", text)
+            self.assertNotIn("permeability", text)
+            column.scene["water"]["drainage"] = "coupled"
+            self.assertIn("permeability 1e-5 m/s", column_tables.layers(column))
 
     def test_block(self):
         self.make("soil_column", "block", SCENES / "biaxial/iwan.toml", "--set", "analysis.load_steps=4", "--set",

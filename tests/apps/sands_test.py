@@ -44,7 +44,7 @@ class Sands(AppTest):
     def test_run_library_and_column_know_their_sand(self):
         self.write("my_sand.toml", SAND)
         scene = self.write("scene.toml", SCENE.format(sand="my_sand.toml"))
-        warned = "specimen.pressure = 50 kPa, but the sand my_sand was compared with tests at any to 40 kPa"
+        warned = "specimen.pressure = 50 kPa, but the sand my_sand was compared with tests at up to 40 kPa"
         run = self.run_test(scene, "-o", "out", "--no-figures")
         self.assert_done(run)
         self.assertIn(warned, run.stderr)
@@ -74,6 +74,10 @@ class Sands(AppTest):
         for word in ("karlsruhe-fine-sand\n", "misfit           fitted 0.148, not fitted 0.24", "100 kPa to 200 kPa"):
             self.assertIn(word, listed.stdout)
         own = self.run_app("isostat", "sands", self.write("mine.toml", SAND))
-        self.assertIn("p0'              any to 40 kPa", own.stdout)
+        self.assertIn("p0'              up to 40 kPa", own.stdout)
+        named = self.run_app("isostat", "sands", "karlsruhe-fine-sand")
+        self.assertIn(named.stdout, listed.stdout)
+        self.assertIn("scenes/sands/karlsruhe-fine-sand.toml", named.stdout)
+        self.assert_refused(self.run_app("isostat", "sands", "karlsruhe"), "is no sand. There are karlsruhe-fine-sand")
         self.assert_refused(self.run_app("isostat", "sands", self.write("wrong.toml", SAND + "[motion]\n")),
                             "wrong.toml:10: motion; a sand has")

@@ -151,6 +151,12 @@ class SiteResponse(ColumnTest):
             error = np.abs(rows["input_ax"][::round(0.01 / STEP)] - expected).max() / np.abs(expected).max()
             print(f"{name}: error {error:.1e}")
             self.assert_below(error, 1e-9, "ten digits of the record")
+        self.write("scene.at2", "precious")
+        for words, said in ((["-o", "scene.at2"], "scene.at2: exists and is not a file of this command. Give another"),
+                            (["-o", "scene.toml"], "scene.toml: must end with .at2."),
+                            (["-o", "none/a.at2"], "none/a.at2: cannot be written: there is no folder")):
+            self.assert_refused(self.run_app("isostat", "motion", self.runs / "rows", *words), said)
+        self.assert_refused(self.run_app("isostat", "motion", "none"), "none: does not exist. Give the results folder")
         for word, message in (("4 m", r"depth = 4 m: must be one of output.depths \(1 m, 3 m, 5 m\)"),
                               ("base", "--at base: must be surface, input, within or a depth"),
                               ("3", "--at 3: must be"), ("3 kPa", "--at 3 kPa: must be"),

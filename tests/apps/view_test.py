@@ -72,6 +72,7 @@ class Tests(AppTest):
     def test_pictures(self):
         if NO_VIEWER:
             self.skipTest(NO_VIEWER)
+        self.assert_done(self.isostat("view", "run", "--picture", "end.png"))  # is replaced
         for name, words in (("start", ("--time", 0)), ("end", ()), ("velocity", ("--colour", "velocity"))):
             self.assert_done(self.isostat("view", "run", "--picture", f"{name}.png", *words))
         start, end, velocity = (Image.open(self.folder / f"{name}.png").convert("RGB")
@@ -85,14 +86,27 @@ class Tests(AppTest):
 
     def test_what_they_refuse(self):
         (self.folder / "empty").mkdir()
-        self.assert_refused(self.isostat("vtkhdf", "empty"), "empty: has no stored packings and no mesh. Run it with")
+        self.write("mine.png", "precious")
+        self.write("run/grains.vtkhdf", "precious")
+        self.assert_refused(self.isostat("vtkhdf", "run"),
+                            "run/grains.vtkhdf: exists and is not a file of this command")
+        for command in ("vtkhdf", "view"):  # without a display, too
+            for words, said in ((["empty"], "empty: has no stored packings and no mesh. Run it with"),
+                                (["none"], "none: does not exist. Give the results folder of a run"),
+                                (["mine.png"], "mine.png: is a file, not a results folder")):
+                self.assert_refused(self.isostat(command, *words, DISPLAY=""), said)
+        for words, said in ((("--picture", "mine.png"), "mine.png: exists and is not a file of this command"),
+                            (("--picture", "scene.toml"), "scene.toml: must end with .png"),
+                            (("--picture", "none/a.png"), "none/a.png: cannot be written: there is no folder"),
+                            (("--time", "9"), "--time 9: run has stored moments from 0 to 0.")):
+            self.assert_refused(self.isostat("view", "run", *words, DISPLAY=""), said)
+        self.assertEqual((self.folder / "mine.png").read_text(), "precious")
         (self.folder / "none/vtkmodules").mkdir(parents=True)
         self.write("none/vtkmodules/__init__.py", "raise ImportError\n")
         self.assert_refused(self.isostat("view", "run", PYTHONPATH=str(self.folder / "none")),
                             "isostat view: needs VTK for this Python: apt-get install python3-vtk9")
         if not NO_VIEWER:
             self.assert_refused(self.isostat("view", "run", DISPLAY=""), "there is no display (DISPLAY is not set)")
-            self.assert_refused(self.isostat("view", "empty", "--picture", "a.png"), "empty: has no stored packings")
 
 
 class Columns(GrainColumnTest):

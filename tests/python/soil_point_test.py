@@ -204,11 +204,16 @@ class SoilPointTest(FolderTest):
                      "figures/soil_test.png"):
             self.assertTrue((folder / name).is_file(), name)
         for more, code in ((["--ratios", "0.1,0.2", "--vertical-stress", "50 kPa", "--no-figures"], 0),
-                           (["--layer", "none"], 2), (["--vertical-stress", "50"], 2)):
+                           (["--layer", "dense sand"], 2), (["--layer", "none"], 2), (["--vertical-stress", "50"], 2)):
             self.assertEqual(self.run_command(*words, *more).returncode, code, more)
+        self.assertEqual(json.loads((folder / "soil_test.json").read_text())["layer"], "loose sand")
+        done = self.run_command("soil-test", COLUMN, "--layer", "loose sand", "--ratios", "0.1", "--no-figures",
+                                cwd=self.folder)
+        left = self.folder / "results/recorded_motion_soil_test_loose_sand/summary.txt"
+        self.assertTrue(left.is_file(), done.stderr)
 
-    def run_command(self, *words):
-        return subprocess.run([BINARIES / "isostat", *map(str, words)], capture_output=True, text=True,
+    def run_command(self, *words, **where):
+        return subprocess.run([BINARIES / "isostat", *map(str, words)], **where, capture_output=True, text=True,
                               timeout=TIME_LIMIT, check=False)
 
 

@@ -15,6 +15,7 @@ from isostat.calls import stopped_by_signals
 from isostat.campaign.engines import ENGINE_TEXT, engine
 from isostat.campaign.folder import write_replacing
 from isostat.figures.command_line import CommandLine
+from isostat.figures.files import BadInput, Damaged
 
 SCENES = next((folder for parent in pathlib.Path(__file__).parents[2:7]
                if (folder := parent / "share/isostat").is_dir()), pathlib.Path("apps"))
@@ -84,7 +85,7 @@ def run(program: Callable[[], None]) -> int:
             program()
             sys.stdout.flush()
         return 0
-    except _core.InputError as error:
+    except (_core.InputError, BadInput, Damaged) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

@@ -13,6 +13,7 @@ import dataclasses
 import json
 import math
 import pathlib
+import re
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from isostat.campaign import command
 from isostat.campaign.folder import CampaignFolder, write_replacing
 from isostat.campaign.resistance.outcome import REFERENCE, Outcome, fit_power_law
 from isostat.campaign.resistance.scenes import parse_ratios
+from isostat.figures.files import read_parsed
 
 STRAINS = np.geomspace(1e-6, 1e-2, 17)
 STEPS = 50  # of a quarter of a cycle
@@ -155,8 +157,14 @@ def run(options):
     from isostat import column  # pylint: disable=import-outside-toplevel
     ratios = parse_ratios(options.ratios) if options.ratios else None
     scene = column.ColumnScene(options.scene, set=command.overrides(options.set))
-    folder = options.output or pathlib.Path(f"{scene.folder}_soil_test")
+    of_layer = "_" + re.sub(r"\W+", "_", options.layer) if options.layer else ""
+    folder = options.output or pathlib.Path(f"{scene.folder}_soil_test{of_layer}")
     test = soil_test(scene, options.layer, vertical_stress=options.vertical_stress, ratios=ratios)
+    kept = folder / "soil_test.json"
+    other = read_parsed(kept)["layer"] if kept.is_file() and not options.overwrite else test.layer
+    if other != test.layer:
+        raise _core.InputError(f"{folder}: has results of the layer \"{other}\". Choose another --output, or --overwrite to "
+                               "replace them.")
     CampaignFolder(folder, {"scene.toml": scene.text}, overwrite=options.overwrite, program="soil_column")
     leave(folder, f"{scene.title}: {test.layer or 'layer'}", test, not options.no_figures)
 
@@ -169,8 +177,9 @@ def main(words: list[str]) -> int:
     line.add_argument("--vertical-stress", type=pressure, help='effective, e.g. "100 kPa" (default: that in the middle of the layer)')
     line.add_argument("--ratios", help="cyclic stress ratios tau/sigma'_v0, e.g. 0.10,0.15,0.20 (default: five around that "
                       "of 15 cycles)")
-    line.add_argument("-o", "--output", type=pathlib.Path, help="results folder (default: results/<scene name>_soil_test)")
-    line.add_argument("--overwrite", action="store_true", help="replace results of another scene in this folder")
+    line.add_argument("-o", "--output", type=pathlib.Path, help="results folder (default: results/<scene name>_soil_test, with "
+                      "_<layer> where one is named)")
+    line.add_argument("--overwrite", action="store_true", help="replace results of another scene or layer in this folder")
     line.add_argument("--no-figures", action="store_true", help="leave no figure and no report")
     options = line.parse_args(words)
     return command.run(lambda: run(options))

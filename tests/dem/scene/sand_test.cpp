@@ -99,6 +99,8 @@ TEST_F(Sand, ErrorsNameItsFileAndLine)
               StartsWith(file + ":11: contact.young = 1 mm;"));
   EXPECT_THAT(refusal("", broken("misfit = 0.2", "misfitt = 0.2")), StartsWith(file + ":3: sand.misfitt"));
   EXPECT_THAT(refusal("", broken("e_min = 0.5", "e_min = 0.9")), StartsWith(file + ":16: specimen.e_min"));
+  EXPECT_THAT(refusal("", broken("= \"50 kPa\"", "= \"101 kPa\"")),
+              StartsWith(file + ":4: sand.lowest_pressure = 101 kPa; must not be above sand.highest_pressure"));
   EXPECT_THAT(refusal("", std::string(sand) + "[motion]\n"), StartsWith(file + ":18: motion; a sand has the tables"));
   EXPECT_THAT(refusal("[contact]\nlaw = \"hertz-mindlin\"\nstiffness_ratio = 0.3\n"),
               StartsWith(scene + ":4: contact."));
@@ -117,7 +119,7 @@ TEST_F(Sand, WarnsOutsideOfItsRangeAlone)
       beyond_sand(taken("[specimen]\npressure = \"101 kPa\"\n" + stage + "0.06\n"), 0.71),
       ElementsAre(
           HasSubstr("specimen.pressure = 101 kPa, but the sand my_sand was compared with tests at 50 to 100 kPa"),
-          HasSubstr("e = 0.7100, but the sand my_sand was compared with tests at any to 0.7;"),
+          HasSubstr("e = 0.7100, but the sand my_sand was compared with tests at up to 0.7;"),
           HasSubstr("stage.0.strain = 0.06, but")));
   EXPECT_THAT(beyond_sand(parse_scene("[specimen]\nvoid_ratio = 2\n", "scene.toml"), 2), ElementsAre());
 }
