@@ -132,6 +132,7 @@ void LinearSolver::read_options()
   petsc_check(KSPGetType(p.ksp, &method));
   petsc_check(PCGetType(pc, &preconditioner));
   effort_.method = fmt::format("{}, {}", method, preconditioner);
+  refuse_no_solution(method, preconditioner);
   if (std::string_view(method) != KSPPREONLY || std::string_view(preconditioner) != PCLU)
     return;
   petsc_check(PCFactorSetUpMatSolverType(pc));
@@ -140,6 +141,21 @@ void LinearSolver::read_options()
   if (package && std::string_view(package) == MATSOLVERMUMPS)
     for (const auto &[number, value] : p.direct.icntl)
       petsc_check(MatMumpsSetIcntl(p.factor, number, value));
+}
+
+/// What leaves the start, or one preconditioning, as the solution without a word.
+void LinearSolver::refuse_no_solution(const std::string &method, const std::string &preconditioner) const
+{
+  constexpr std::string_view direct[] = {PCLU, PCCHOLESKY, PCREDUNDANT};
+  if (method == KSPPREONLY && std::ranges::find(direct, preconditioner) == std::end(direct))
+    throw InputError(fmt::format("-{0}ksp_type preonly with -{0}pc_type {1} applies a preconditioner once, which "
+                                 "solves nothing. Give another ksp_type, or pc_type lu.",
+                                 parts_->prefix, preconditioner));
+  PetscReal relative = 0;
+  petsc_check(KSPGetTolerances(parts_->ksp, &relative, nullptr, nullptr, nullptr));
+  if (!(relative < 1))
+    throw InputError(fmt::format("-{}ksp_rtol {:g}; must be below 1, or no iteration is done. Give for example 1e-10.",
+                                 parts_->prefix, relative));
 }
 
 void LinearSolver::refuse_unused() const

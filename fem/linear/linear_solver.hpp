@@ -46,6 +46,7 @@ private:
   struct Parts;
 
   void read_options();
+  void refuse_no_solution(const std::string &method, const std::string &preconditioner) const;
   void refuse_unused() const;
 
   std::unique_ptr<Parts> parts_;

@@ -209,7 +209,14 @@ void Umat::commit()
   RowMaterial::commit();
   for (std::size_t i = 0; i < n_points(); ++i)
     if (double *row = &committed_[i * stride_]; mean_pressure(row) > rise * row[pressure])
-      find_waves(i, row, still_tangent(i));
+      try
+        {
+          find_waves(i, row, still_tangent(i));
+        }
+      catch (const InputError &error) // in a run: it says the step
+        {
+          throw RunFailure(error.what());
+        }
 }
 
 /// DDSDDE of the committed state.

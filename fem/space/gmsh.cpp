@@ -117,7 +117,10 @@ private:
         for (unsigned i = 0; i < 4; ++i)
           face[i] = cell.corners[flat ? of_quadrilateral[f][i] : of_hexahedron[f][i]];
         std::ranges::sort(face);
-        ++faces_[face];
+        if (++faces_[face] > 2)
+          refuse(fmt::format("element {} has a side that two others have: it overlaps, or is in two physical groups. "
+                             "Give each surface one group.",
+                             element.number));
       }
   }
 

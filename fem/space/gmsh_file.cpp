@@ -34,7 +34,7 @@ public:
   double number()
   {
     double value = 0;
-    if (const std::string_view word = next(); !parse(word, value))
+    if (const std::string_view word = next(); !parse(word, value) || !std::isfinite(value))
       wrong(fmt::format("\"{}\" where a number is expected. Save the mesh again, as text of version 4.1.", word));
     return value;
   }

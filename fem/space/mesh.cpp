@@ -146,7 +146,7 @@ void make_given(const MeshSpec &spec, dealii::Triangulation<dim> &mesh)
         of_boundary.boundary_lines = sides;
       else
         of_boundary.boundary_quads = sides;
-      GridTools::invert_all_negative_measure_cells(places, cells);
+      GridTools::invert_cells_with_negative_measure(places, cells);
       GridTools::consistently_order_cells(cells);
       mesh.create_triangulation(places, cells, of_boundary);
     }

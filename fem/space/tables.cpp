@@ -7,6 +7,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace isostat
@@ -90,9 +91,10 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
       append_gradients(u, t.n_nodes, t.n_gauss, t.gradient);
       append_gradients(p, t.pressure_nodes_per_cell(), t.n_gauss, t.pressure_gradient);
       append_shares(lumped, t.n_nodes, t.nodal_share);
+      const double least_share = *std::min_element(t.nodal_share.end() - t.n_nodes, t.nodal_share.end());
       for (std::size_t q = 0; q < t.n_gauss; ++q)
         {
-          if (!(u.JxW(q) > 0))
+          if (!(u.JxW(q) > 0) || least_share <= 0)
             throw InputError(fmt::format("mesh: the cell around x = {:.6g} m, z = {:.6g} m is folded or flat; must be "
                                          "convex",
                                          cell->center()[0], cell->center()[dim - 1]));

@@ -58,9 +58,15 @@ class Stamps(unittest.TestCase):
         paper, as_run = study.load("paper"), study.as_run
         before = study.fingerprint("paper", paper)
 
-        def with_a_new_key(folder, planned):
-            run = as_run(folder, planned)
-            return dataclasses.replace(run, text=run.text.replace("[motion]", "[motion]\nnew = false"))
-        with unittest.mock.patch.object(study, "as_run", with_a_new_key):
-            self.assertEqual(study.fingerprint("paper", paper, before["keys"]), before)
-            self.assertNotEqual(study.fingerprint("paper", paper), before)
+        def with_a_new_key(value):
+            def made(folder, planned):
+                run = as_run(folder, planned)
+                return dataclasses.replace(run, text=run.text.replace("[motion]", f"[motion]\nnew = {value}"))
+            return unittest.mock.patch.object(study, "as_run", made)
+        defaults = [*study.default_scenes(), "[motion]\nnew = false\n"]
+        with unittest.mock.patch.object(study, "default_scenes", lambda: defaults):
+            with with_a_new_key("false"):
+                self.assertEqual(study.fingerprint("paper", paper, before["keys"]), before)
+                self.assertNotEqual(study.fingerprint("paper", paper), before)
+            with with_a_new_key("true"):
+                self.assertNotEqual(study.fingerprint("paper", paper, before["keys"]), before)

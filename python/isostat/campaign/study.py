@@ -167,8 +167,8 @@ def settings_of(scene: str) -> list[tuple[str, str]]:
 
 def fingerprint(name: str, study: Any, known: str | None = None) -> dict[str, str]:
     """`scenes`: SHA-256 of what a whole study runs: its scenes with every default. Of those that need something prepared
-    it is the module that makes them, and the defaults of all programs. `keys`: those of these scenes. Only `known` keys
-    count, if they are given: one that is newer than a page is off by default, and changes nothing in it."""
+    it is the module that makes them, and the defaults of all programs. `keys`: those of these scenes. If `known` keys are
+    given, others count only with a value that is not their default: a key that is newer than a page is off by default."""
     options = parse([], name, study)
     options.output = pathlib.Path("/nowhere")  # scenes name files in it
     scenes, modules = set(), set()
@@ -186,7 +186,9 @@ def fingerprint(name: str, study: Any, known: str | None = None) -> dict[str, st
             scenes |= set(default_scenes())
     settings = [settings_of(scene) for scene in scenes]
     keys = set(known.split()) if known is not None else {key for of_scene in settings for key, _ in of_scene}
-    modules |= {"\n".join(f"{key} = {value}" for key, value in of_scene if key in keys) for of_scene in settings}
+    defaults = set() if known is None else {line for scene in default_scenes() for line in settings_of(scene)}
+    modules |= {"\n".join(f"{key} = {value}" for key, value in of_scene
+                          if key in keys or (key, value) not in defaults) for of_scene in settings}
     text = "\n".join(sorted(modules)).replace(str(studies_folder().parent), "")
     return {"scenes": hashlib.sha256(text.encode()).hexdigest(), "keys": " ".join(sorted(keys))}
 

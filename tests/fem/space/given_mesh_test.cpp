@@ -131,6 +131,18 @@ TEST(GivenMesh, HasTheVolumeOfItsCellsWhateverTheirShape)
     }
 }
 
+TEST(GivenMesh, MayHaveCellsOfEitherOrientation)
+{
+  const auto volume = [](const std::string &text) {
+    MeshSpec spec = test::soil_of(test::read_gmsh_text(text, 2, {"sand", "clay"}));
+    spec.soil.layers = {{.name = "sand"}, {.name = "clay"}};
+    const Discretisation<2> space(spec, {});
+    return std::accumulate(space.weight.begin(), space.weight.end(), 0.0);
+  };
+  EXPECT_NEAR_BECAUSE(volume(with(of_two_layers, "8 10 20 40 30", "8 30 40 20 10")), volume(of_two_layers), 1e-12,
+                      "round-off");
+}
+
 TEST(GivenMesh, RefusesWhatIsNoSoil)
 {
   const std::string &good = of_two_layers;
@@ -148,13 +160,19 @@ TEST(GivenMesh, RefusesWhatIsNoSoil)
   refused(with(good, "4.1 0 8", "4 0 8"), {":2: version 4 of the format", "2.2 or 4.1"});
   refused(with(good, "4 2 0\n$EndNodes", "4 two 0\n$EndNodes"), {"\"two\" where a number is expected"});
   refused(with(good, "0 3 0\n4 2 0\n", "0 3 0\n0 2 0\n"), {"surface: ", "overhangs"});
+  refused(with(good, "4 2 0\n$EndNodes", "4 nan 0\n$EndNodes"), {"\"nan\" where a number is expected"});
+  refused(with(good, "2 2 3 1\n9 50 30 40 60\n", "2 2 3 2\n9 50 30 40 60\n10 50 30 40 60\n"),
+          {"element 10 has a side that two others have"});
   refused(with(good, "4 0 0\n0 1 0\n", "4 -1 0\n0 1 0\n"), {"the smallest z is -1 m; must be 0 m"});
-  const MeshSpec folded = test::soil_of(test::read_gmsh_text(
-      test::gmsh_text<2>({2, 2, 0},
-                         [](std::array<double, 3> at) {
-                           return at[0] == 0.5 && at[1] == 0.5 ? std::array<double, 3>{0.9, 0.95, 0} : at;
-                         }),
-      2));
-  test::expect_parts(test::refusal([&] { Discretisation<2>(folded, {}); }), {"folded or flat"});
+  for (const double middle : {0.95, 0.77}) // a corner is beyond the diagonal; the points of the second are not
+    {
+      const MeshSpec folded = test::soil_of(test::read_gmsh_text(
+          test::gmsh_text<2>({2, 2, 0},
+                             [middle](std::array<double, 3> at) {
+                               return at[0] == 0.5 && at[1] == 0.5 ? std::array<double, 3>{middle, middle, 0} : at;
+                             }),
+          2));
+      test::expect_parts(test::refusal([&] { Discretisation<2>(folded, {}); }), {"folded or flat"});
+    }
 }
 } // namespace isostat
