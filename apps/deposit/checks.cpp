@@ -160,6 +160,8 @@ void check_layer(const SceneDocument &document, ColumnScene &scene, std::size_t 
     document.refuse(prefix + ".permeability_law",
                     "has no effect where no water moves: in an analysis of kind plate or biaxial, and unless "
                     "water.drainage is \"coupled\". Remove it.");
+  if (layer.permeability_law != PermeabilityLaw::constant && layer.permeability == 0)
+    document.refuse(prefix + ".permeability_law", "has no effect on a permeability of 0 m/s. Remove one of them.");
   check_shear_velocity(document, layer, prefix);
   const bool block = scene.analysis.kind == AnalysisKind::biaxial; // neither K0 nor, dry, water
   if (block && scene.water.drainage == Drainage::dry && layer.permeability > 0)

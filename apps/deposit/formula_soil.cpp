@@ -18,13 +18,12 @@ Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0
   return {-k0 * normal, -k0 * normal, -normal, 0, shear, 0};
 }
 
-std::optional<WaveModuli> moduli_in_situ(const ColumnScene &scene, const ColumnLayer &layer, double z)
+std::optional<WaveModuli> moduli_at(const ColumnLayer &layer, const Stress &stress)
 {
-  const std::array<Stress, 1> stress{level_stress(scene, soil_profile(scene), layer.k0, z)};
   try
     {
       const std::unique_ptr<Material> material = formula_material(layer, 1);
-      material->set_initial_stress(stress);
+      material->set_initial_stress({&stress, 1});
       std::array<WaveModuli, 1> moduli;
       material->wave_moduli(moduli);
       return moduli[0];
@@ -33,5 +32,10 @@ std::optional<WaveModuli> moduli_in_situ(const ColumnScene &scene, const ColumnL
     {
       return {};
     }
+}
+
+std::optional<WaveModuli> moduli_in_situ(const ColumnScene &scene, const ColumnLayer &layer, double z)
+{
+  return moduli_at(layer, level_stress(scene, soil_profile(scene), layer.k0, z));
 }
 } // namespace isostat

@@ -13,7 +13,9 @@ std::unique_ptr<Material> formula_material(const ColumnLayer &layer, std::size_t
 /// Stress in situ at a height of a layer between faces that are parallel: its weight, and K0 times that. Pa, tension
 /// positive
 Stress level_stress(const ColumnScene &scene, const SoilProfile &soil, double k0, double z);
-/// Moduli of the waves in a layer from a formula at a height, in situ, Pa; none: its material cannot bear the stress.
+/// Moduli of the waves in a layer from a formula, Pa; none: its material cannot bear the stress.
+std::optional<WaveModuli> moduli_at(const ColumnLayer &layer, const Stress &stress);
+/// Likewise in situ, at a height.
 /// tested: tests/apps/deposit/default_mesh_test.cpp
 std::optional<WaveModuli> moduli_in_situ(const ColumnScene &scene, const ColumnLayer &layer, double z);
 } // namespace isostat

@@ -22,6 +22,20 @@ unsigned cells(const GivenMesh &mesh, std::size_t layer)
   return static_cast<unsigned>(std::max(1.0, std::round(thickness(mesh, layer) / size)));
 }
 
+/// A mesh that was drawn in other units is a thousand times as large.
+void check_size(const SceneDocument &document, const GivenMesh &mesh)
+{
+  constexpr double widest = 20e3, highest = 2e3; // m
+  const auto above = [](const Place &one, const Place &other) { return one[2] < other[2]; };
+  const double height = (*std::ranges::max_element(mesh.places, above))[2];
+  if (mesh.width() > widest || height > highest)
+    document.refuse(
+        "mesh.file",
+        fmt::format("is {:.4g} m wide and {:.4g} m high; must be at most {:g} m and {:g} m. Coordinates are "
+                    "in m: scale a mesh that was drawn in mm by 0.001.",
+                    mesh.width(), height, widest, highest));
+}
+
 std::string name_of(const SceneDocument &document, std::size_t layer)
 {
   const toml::node *name = document.find(fmt::format("layer.{}.name", layer));
@@ -38,8 +52,14 @@ std::shared_ptr<const GivenMesh> expand_mesh_file(SceneDocument &document, const
   found = found_file(document, "mesh.file", scene_path, file->as_string()->get());
   std::vector<std::string> names;
   for (std::size_t k = 0; k < layers->as_array()->size(); ++k)
-    names.push_back(name_of(document, k));
+    {
+      names.push_back(name_of(document, k));
+      if (!names.back().empty() && std::ranges::count(names, names.back()) > 1)
+        document.refuse(fmt::format("layer.{}.name", k),
+                        "is that of another layer, but mesh.file refers to names. Give each layer its own.");
+    }
   std::shared_ptr<const GivenMesh> mesh = read_gmsh(found, 2, names);
+  check_size(document, *mesh);
   for (std::size_t k = 0; k < names.size(); ++k)
     {
       const auto has = [&](const char *key) { return document.find(fmt::format("layer.{}.{}", k, key)) != nullptr; };

@@ -2,6 +2,7 @@
 #include "apps/deposit/plausible.hpp"
 
 #include "apps/deposit/formula_soil.hpp"
+#include "apps/deposit/resistance.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -14,13 +15,11 @@ namespace
 std::vector<double> velocities_in_situ(const ColumnScene &scene)
 {
   std::vector<double> velocities;
-  double z = scene.height();
-  for (const ColumnLayer &layer : scene.layers)
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
     {
-      z -= layer.thickness / 2;
-      const auto moduli = layer.from_formula() ? moduli_in_situ(scene, layer, z) : std::nullopt;
+      const ColumnLayer &layer = scene.layers[k];
+      const auto moduli = layer.from_formula() ? moduli_at(layer, middle_stress(scene, k)) : std::nullopt;
       velocities.push_back(moduli ? std::sqrt(moduli->s / layer.density) : 0);
-      z -= layer.thickness / 2;
     }
   return velocities;
 }
@@ -32,6 +31,7 @@ std::vector<std::string> profile_warnings(const ColumnScene &scene)
 {
   constexpr double softest = 30, stiffest = 1500, inversion = 3; // m/s, m/s, of neighbours
   std::vector<std::string> warnings;
+  const bool stacked = !scene.mesh.given; // else layers lie anywhere
   const std::vector<double> velocities = velocities_in_situ(scene);
   for (std::size_t k = 0; k < scene.layers.size(); ++k)
     {
@@ -45,13 +45,13 @@ std::vector<std::string> profile_warnings(const ColumnScene &scene)
                         "{:g} to {:g} m/s. Check its value and unit.",
                         k, layer.shear_modulus ? "shear_modulus" : "shear_velocity", k, quoted_name(layer), given,
                         softest, stiffest));
-      if (k > 0 && velocities[k] > 0 && velocities[k - 1] > inversion * velocities[k])
+      if (stacked && k > 0 && velocities[k] > 0 && velocities[k - 1] > inversion * velocities[k])
         warnings.push_back(fmt::format("the shear wave is {:.1f} times as fast in layer.{}{} as in layer.{}{} below it "
                                        "({:.4g} and {:.4g} m/s in situ); usual is at most {:g} times. Check both.",
                                        velocities[k - 1] / velocities[k], k - 1, quoted_name(scene.layers[k - 1]), k,
                                        quoted_name(layer), velocities[k - 1], velocities[k], inversion));
     }
-  if (scene.base.compliant() && scene.base.shear_velocity < velocities.back())
+  if (stacked && scene.base.compliant() && scene.base.shear_velocity < velocities.back())
     warnings.push_back(
         fmt::format("base.shear_velocity = {:.4g} m/s is below that of the layer above it, {:.4g} m/s in "
                     "situ{}; rock is stiffer than soil. Check both.",

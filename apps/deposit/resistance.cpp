@@ -6,9 +6,39 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace isostat
 {
+namespace
+{
+/// As in_situ_stress(), Pa.
+double surcharge_on_all(const ColumnScene &scene) { return scene.load.bears_on_all() ? scene.load.surcharge : 0; }
+
+/// Vertical effective stress in situ at top and bottom of a layer, of a mesh from a file in the middles of its highest
+/// and lowest triangle, Pa.
+std::array<double, 2> end_stresses(const ColumnScene &scene, const SoilProfile &soil, std::size_t layer)
+{
+  const double surcharge = surcharge_on_all(scene);
+  std::array<double, 2> ends;
+  if (!scene.mesh.given)
+    {
+      const double middle = soil.height() - scene.layers[layer].in_situ_depth, half = soil.layers[layer].thickness / 2;
+      for (std::size_t end : {0, 1})
+        ends[end] = soil.vertical_effective_stress(end == 0 ? middle + half : middle - half, surcharge);
+      return ends;
+    }
+  ends = {std::numeric_limits<double>::max(), 0};
+  const MeshSpec mesh = mesh_spec(scene);
+  for (const GivenMesh::Part &part : scene.mesh.given->parts(static_cast<unsigned>(layer)))
+    {
+      const double stress = surcharge + mesh.vertical_effective_stress(part.middle);
+      ends = {std::min(ends[0], stress), std::max(ends[1], stress)};
+    }
+  return ends;
+}
+} // namespace
+
 Stress middle_stress(const ColumnScene &scene, std::size_t layer)
 {
   if (scene.analysis.kind == AnalysisKind::biaxial)
@@ -17,11 +47,15 @@ Stress middle_stress(const ColumnScene &scene, std::size_t layer)
   double z = soil.height() - soil.layers[layer].thickness / 2;
   for (std::size_t k = 0; k < layer; ++k)
     z -= soil.layers[k].thickness;
-  const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0; // as in_situ_stress()
-  const double k0 = soil.layers[layer].k0,
-               vertical = scene.mesh.given ? surcharge + mesh_spec(scene).vertical_effective_stress(
-                                                             scene.mesh.given->middle(static_cast<unsigned>(layer)))
-                                           : soil.vertical_effective_stress(z, surcharge);
+  const double surcharge = surcharge_on_all(scene), k0 = soil.layers[layer].k0;
+  double vertical = 0;
+  if (scene.mesh.given)
+    vertical =
+        surcharge + scene.mesh.given->mean(static_cast<unsigned>(layer), [mesh = mesh_spec(scene)](const Place &place) {
+          return mesh.vertical_effective_stress(place);
+        });
+  else
+    vertical = soil.vertical_effective_stress(z, surcharge);
   return {-k0 * vertical, -k0 * vertical, -vertical, 0, 0, 0};
 }
 
@@ -66,7 +100,6 @@ std::vector<std::string> resistance_warnings(const ColumnScene &scene, const std
 {
   constexpr double most = 0.1; // of K_sigma
   const SoilProfile profile = soil_profile(scene);
-  const double surcharge = scene.load.bears_on_all() ? scene.load.surcharge : 0;
   std::vector<std::string> warnings;
   for (std::size_t k = 0; k < scene.layers.size(); ++k)
     {
@@ -83,13 +116,10 @@ std::vector<std::string> resistance_warnings(const ColumnScene &scene, const std
                                        k, soil.name, *ratio, strength));
       if (scene.analysis.kind == AnalysisKind::biaxial)
         continue;
-      const double middle = profile.height() - soil.in_situ_depth;
-      const auto factor = [&](double height) {
-        return overburden_factor(soil.sand_density, std::max(1., profile.vertical_effective_stress(height, surcharge)));
-      };
+      const auto factor = [&](double vertical) { return overburden_factor(soil.sand_density, std::max(1., vertical)); };
       double largest = 0;
-      for (const double way : {-soil.thickness / 2, soil.thickness / 2})
-        largest = std::max(largest, std::abs(factor(middle + way) / factor(middle) - 1));
+      for (const double vertical : end_stresses(scene, profile, k))
+        largest = std::max(largest, std::abs(factor(vertical) / factor(-stress[2]) - 1));
       if (largest > most)
         warnings.push_back(fmt::format("layer.{} ({}) has the cyclic resistance of its middle, from which that of its "
                                        "top or bottom differs by {:.0f} %. Split the layer.",

@@ -226,8 +226,10 @@ void find_in_situ_states(ColumnScene &scene)
       ColumnLayer &layer = scene.layers[k];
       const Stress stress = middle_stress(scene, k);
       layer.in_situ_pressure = -(stress[0] + stress[1] + stress[2]) / 3;
-      layer.in_situ_depth =
-          scene.mesh.given ? mesh_spec(scene).depth(scene.mesh.given->middle(k)) : top + layer.thickness / 2;
+      layer.in_situ_depth = top + layer.thickness / 2;
+      if (scene.mesh.given)
+        layer.in_situ_depth = scene.mesh.given->mean(
+            static_cast<unsigned>(k), [mesh = mesh_spec(scene)](const Place &place) { return mesh.depth(place); });
       top += layer.thickness;
     }
 }

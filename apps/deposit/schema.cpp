@@ -118,7 +118,7 @@ constexpr Key water_keys[] = {
 
 constexpr Key layer_keys[] = {
   {.path = "name", .field = member_of<ColumnLayer, &ColumnLayer::name>,
-   .text = "Name of the layer, for tables and figures."},
+   .text = "Name of the layer, for tables and figures; with `mesh.file` its own."},
   {.path = "thickness", .field = member_of<ColumnLayer, &ColumnLayer::thickness>, .unit = unit::m,
    .presence = Presence::required, .value = "5 m", .range = {1e-3, 1e5},
    .reason = "because a layer without height has no cells, and the crust of the Earth is not as thick",

@@ -73,9 +73,10 @@ std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, const CellTab
     }
   catch (const InputError &error)
     {
-      throw InputError(fmt::format("layer.{} ({}): {}. Points count from the lower end of the layer; correct the "
-                                   "layer's k0 or its material.",
-                                   layer, soil.name, error.what()));
+      throw InputError(fmt::format("layer.{} ({}): {}. Points count from the lower end of the layer; correct {}.",
+                                   layer, soil.name, error.what(),
+                                   soil.material == LayerMaterial::umat ? "umat.props, umat.statev or the layer's k0"
+                                                                        : "the layer's k0 or its material"));
     }
 }
 

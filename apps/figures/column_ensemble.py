@@ -66,7 +66,8 @@ class Ensemble:
 def boundaries_of(folder):
     """Depths between the layers of a run, m; none if its summary is missing."""
     try:
-        return [layer["bottom"] for layer in read_parsed(folder / "summary.json").get("layers", [])][:-1]
+        layers = read_parsed(folder / "summary.json").get("layers", [])
+        return [layer["bottom"] for layer in layers[:-1] if layer["bottom"] is not None]
     except OSError:
         return []
 

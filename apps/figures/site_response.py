@@ -149,7 +149,7 @@ def first_frequency(column, axis="x"):
 
 def resistance(column):
     """Depth (m), CSR, CRR and factor of safety CRR/CSR of each point of profile.csv, not-a-number in layers without
-    resistance; None if no layer of summary.json has `crr`.
+    resistance; None if no layer of summary.json has `crr`, or if depths do not say the layer (mesh.file).
 
     CSR   0.65 of the largest resultant shear stress, until r_u of the point reaches 0.5, over sigma'_v0: what comes
           later are spikes of soil that dilates. 0.65 is for earthquakes; cycles of one amplitude have CSR/0.65
@@ -157,7 +157,7 @@ def resistance(column):
           another
     """
     given = [layer.get("crr") for layer in column.summary.get("layers", [])]
-    if not column.peak_profile or not any(given):
+    if not column.peak_profile or not any(given) or column.is_drawn:
         return None
     profile = column.peak_profile
     points = np.isfinite(profile["CSR"])

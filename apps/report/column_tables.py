@@ -33,7 +33,10 @@ def span(values, digits=3):
 
 
 def speeds(column, k):
-    """Of shear waves in a layer at the start."""
+    """Of shear waves in a layer at the start; of a mesh from a file, whose layers lie anywhere, at its mean p'."""
+    if column.is_drawn:
+        velocity = said_of(column, k).get("in_situ_shear_velocity")
+        return f"{velocity:.4g}" if velocity else "-"
     if column.velocities:
         inside = column.layer_at(column.velocities["depth"]) == k
         return span(column.velocities["shear_velocity"][inside]) if inside.any() else "-"
@@ -56,7 +59,7 @@ def damping(column, k):
 
 
 def layers(column):
-    """A row for each layer, from the surface down."""
+    """A row for each layer, from the surface down; without depths where layers lie anywhere."""
     ends, rows, parameters = np.cumsum([0.0, *(layer["height"] for layer in column.layers)]), [], []
     unused = ELSEWHERE | (OF_WATER if column.scene.get("water", {}).get("drainage") == "dry" else set())
     for k, table in enumerate(column.scene.get("layer", [])):
@@ -65,11 +68,15 @@ def layers(column):
                           for key, value in flat(table | used).items()
                           if key not in unused and not (key == "strength_ratio" and "shear_strength" in table))
         weight = column.layers[k]["density"] * column.water["gravity"] / 1e3
-        rows.append((name_of(table, k), f"{ends[k]:.4g} to {ends[k + 1]:.4g}", f"{column.layers[k]['height']:.4g}",
-                     f"{weight:.4g}", speeds(column, k), damping(column, k), table["material"].replace("_", "-")))
+        height = column.layers[k]["height"]
+        depths = () if column.is_drawn else (f"{ends[k]:.4g} to {ends[k + 1]:.4g}", f"{height:.4g}")
+        rows.append((name_of(table, k), *depths, f"{weight:.4g}", speeds(column, k), damping(column, k),
+                     table["material"].replace("_", "-")))
         parameters.append((name_of(table, k), given))
-    head = ("Layer", "Depth (m)", "Thickness (m)", "Unit weight (kN/m³)", "V_s (m/s)", "Damping", "Material")
-    return html.table(head, rows, "layers", numbers=(1, 2, 3, 4)) + html.properties(parameters) if rows else ""
+    depths = () if column.is_drawn else ("Depth (m)", "Thickness (m)")
+    head = ("Layer", *depths, "Unit weight (kN/m³)", "V_s (m/s)", "Damping", "Material")
+    numbers = range(1, len(depths) + 3)
+    return html.table(head, rows, "layers", numbers=numbers) + html.properties(parameters) if rows else ""
 
 
 def site(column):

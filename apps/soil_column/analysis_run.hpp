@@ -71,10 +71,8 @@ public:
         fail(failure, at);
       }
     Summary summary = report();
-    if (const LinearEffort linear = run_.linear_effort(); linear.solves > 0)
-      summary.row("linear solver", "{}: {} iterations in {} solutions, at most {}",
-                  Value{"linear_solver", linear.method}, Value{"linear_iterations", linear.iterations},
-                  Value{"linear_solutions", linear.solves}, Value{"linear_iterations_most", linear.most});
+    add_linear(summary, "linear solver", "linear", run_.linear_effort());
+    add_linear(summary, "of settling", "settling_linear", settled_.linear);
     return {std::move(summary), times(), failure_};
   }
 
@@ -151,7 +149,7 @@ protected:
   const std::unique_ptr<const FiniteElementSpace> mesh_;
   const FiniteElementSpace &space_ = *mesh_;
   SoilMaterial soil_;
-  double settled_; ///< how far a box has moved to its equilibrium, m
+  Settled settled_; ///< a box, to its equilibrium
   Solver run_;
   FileLock folder_;                           ///< of the results, on the first rank
   std::unique_ptr<ColumnCheckpoint> resumed_; ///< null: the run starts again
@@ -162,13 +160,13 @@ protected:
 
 private:
   /// A resumed run settles, too: the time step is that of the stiffness then.
-  double settled()
+  Settled settled()
   {
     if (scene_.mesh.sides != Sides::walls)
-      return 0;
+      return {};
     const Progress progress(request_.quiet);
     return settle(scene_, space_.mesh(), *soil_.material, [&](const std::string &line) {
-      if (scene_.has_grains()) // formulas settle at once
+      if (scene_.has_grains() || !scene_.analysis.petsc.empty()) // else formulas settle at once
         progress.say(line);
       if (on_any_rank(stop_requested()))
         throw Interrupted("interrupted while the soil settles, before the first step; start it again");
@@ -189,11 +187,13 @@ private:
     });
   }
 
-  /// What an iterative linear solver takes.
-  std::string linear_state() const
+  /// What an iterative linear solver took.   @param key  what names in summary.json begin with
+  static void add_linear(Summary &summary, const char *label, const std::string &key, const LinearEffort &linear)
   {
-    const LinearEffort linear = run_.linear_effort();
-    return linear.solves > 0 ? fmt::format("  {}: {:.1f} iterations", linear.method, linear.mean()) : "";
+    if (linear.solves > 0)
+      summary.row(label, "{}: {} iterations in {} solutions, at most {}", Value{key + "_solver", linear.method},
+                  Value{key + "_iterations", linear.iterations}, Value{key + "_solutions", linear.solves},
+                  Value{key + "_iterations_most", linear.most});
   }
 
   void note_provenance() const
@@ -207,7 +207,7 @@ private:
   void observe()
   {
     if (progress_.due(run_.n_steps(), static_cast<double>(run_.n_steps()) / n_total()))
-      progress_.say(progress_.line(key_state()) + linear_state());
+      progress_.say(progress_.line(key_state()) + run_.linear_effort().text());
     const bool now = has_long_steps() || run_.n_steps() % 256 == 0;
     const bool asking_is_cheap = alone_ || space_.shared_out(); // next to the sums over all ranks in each step
     if ((now || asking_is_cheap) && on_any_rank(stop_requested()))

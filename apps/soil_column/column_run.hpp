@@ -67,7 +67,7 @@ protected:
     if (scene_.mesh.sides == Sides::walls)
       {
         box_motion_ = box_motion(space_, run_.displacement());
-        box_motion_->settled = this->settled_;
+        box_motion_->settled = this->settled_.largest;
       }
     this->write([&] {
       files_.finish(follower_.peaks, run_.displacement(), spreading_);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <limits>
 #include <mpi.h>
 #include <numbers>
@@ -64,6 +65,12 @@ bool drifts(const Motion &motion, const ColumnMotion &asked)
   return way > very_far || (way > far && std::abs(motion.velocity(end)) > share * fastest);
 }
 
+/// What makes the elements of a layer smaller.
+std::string size_of_elements(const ColumnScene &scene, std::size_t layer)
+{
+  return scene.mesh.given ? "the size of its elements in the mesh" : fmt::format("layer.{}.cell_size", layer);
+}
+
 /// What is wrong with cells that are too high for the skin of a harmonic load (drainage_bound()).
 std::string coarse_skin(const ColumnScene &scene, const DrainageBound &bound)
 {
@@ -74,10 +81,10 @@ std::string coarse_skin(const ColumnScene &scene, const DrainageBound &bound)
   return fmt::format(
       "the cells of layer.{}{} where water drains, {:.3g} m high, do not show the skin in which a load of {:g} Hz "
       "moves the water there: sqrt(2 c/omega) = {:.3g} m (c = {:.3g} m2/s), and pore pressures are within 2 % only "
-      "with cells of {:.2f} of it. Set layer.{}.cell_size to {:.2g} m or less, or disregard pore pressures within "
+      "with cells of {:.2f} of it. Set {} to {:.2g} m or less, or disregard pore pressures within "
       "three cells, {:.3g} m, of where water drains.",
       bound.layer, quoted_name(layer), bound.cell, scene.load.frequency, skin, bound.coefficient, cells_per_skin,
-      bound.layer, cells_per_skin * skin, 3 * bound.cell);
+      size_of_elements(scene, bound.layer), cells_per_skin * skin, 3 * bound.cell);
 }
 } // namespace
 
@@ -172,9 +179,10 @@ std::string softened_elements(const ColumnScene &scene, const std::vector<Carrie
   const Layer &layer = scene.layers[worst];
   return fmt::format(
       "the soil of layer.{}{} became so soft that its elements, {:.3g} m high, carried waves up to {:.3g} "
-      "Hz only ({} nodes to a wave), and {:.3g} Hz are of interest. See with --check-mesh what depends "
+      "Hz only ({} nodes to a wave), and {:.3g} Hz are of interest. See with {} what depends "
       "on it, and take more cells if it matters; strains of soil that liquefies depend on the mesh at any size.",
-      worst, quoted_name(layer), waves[worst].height, carried, nodes_per_wave, frequency);
+      worst, quoted_name(layer), waves[worst].height, carried, nodes_per_wave, frequency,
+      scene.mesh.given ? "a finer mesh" : "--check-mesh");
 }
 
 std::string coarse_elements(const ColumnScene &scene, const std::vector<double> &velocities, const CellTables &mesh,
@@ -193,12 +201,15 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
     }
   if (frequency == 0 || fewest >= nodes_per_wave)
     return "";
+  const Layer &soft = scene.layers[worst];
   return fmt::format(
       "the elements of layer.{}{} are too long for the shortest wave of interest: {:.1f} nodes in {:.3g} m ({:.3g} m/s "
-      "at {:.3g} Hz), {} are needed. Set layer.{}.cells to {:.0f} or more, or analysis.highest_frequency to what "
-      "matters.",
-      worst, quoted_name(scene.layers[worst]), fewest, slowest[worst] / frequency, slowest[worst], frequency,
-      nodes_per_wave, worst, std::ceil(scene.layers[worst].n_cells() * nodes_per_wave / fewest));
+      "at {:.3g} Hz), {} are needed. Set {}, or analysis.highest_frequency to what matters.",
+      worst, quoted_name(soft), fewest, slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave,
+      scene.mesh.given ? fmt::format("{} to {:.2g} m or less", size_of_elements(scene, worst),
+                                     soft.thickness / soft.n_cells() * fewest / nodes_per_wave)
+                       : fmt::format("layer.{}.cells to {:.0f} or more", worst,
+                                     std::ceil(soft.n_cells() * nodes_per_wave / fewest)));
 }
 
 std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &space, const Material &material)
@@ -215,7 +226,7 @@ std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &
     return "";
   const ColumnLayer &layer = scene.layers[bound.layer];
   const std::string where = fmt::format("layer.{}", bound.layer);
-  const std::string finer = first > 0 ? fmt::format("{}.cell_size to {:.2g} m or less, or ", where,
+  const std::string finer = first > 0 ? fmt::format("{} to {:.2g} m or less, or ", size_of_elements(scene, bound.layer),
                                                     layer.thickness / layer.n_cells() * std::sqrt(first / bound.time))
                                       : "";
   return fmt::format(
@@ -241,6 +252,15 @@ std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vec
     warnings.push_back(fmt::format("output.history_interval = {:g} s is {:.6g} of the time step, {:g} s: rows are "
                                    "{:.6g} s apart. Leave analysis.time_step out, or give a step that divides it.",
                                    scene.output.history_interval, steps, step, std::round(steps) * step));
+  std::vector<std::string> still; // formulas, whose stress does not turn
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    if (scene.layers[k].from_formula() || scene.layers[k].material == LayerMaterial::umat)
+      still.push_back(fmt::format("layer.{}{}", k, quoted_name(scene.layers[k])));
+  if (scene.analysis.large_strain && scene.mesh.dimension > 1 && !still.empty())
+    warnings.push_back(fmt::format("analysis.large_strain moves the cells, but does not turn the stress of {}: only "
+                                   "that of packings turns with the soil. Where such soil turns by 10 % its stress is "
+                                   "wrong by about as much.",
+                                   fmt::join(still, ", ")));
   const auto vertical = [](const ColumnMotion &motion) { return motion.axis == Axis::z; };
   if (scene.water.drainage == Drainage::undrained && std::ranges::any_of(scene.motions, vertical))
     warnings.push_back(

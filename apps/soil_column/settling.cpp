@@ -58,8 +58,8 @@ StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
 }
 } // namespace
 
-double settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material,
-              const std::function<void(const std::string &)> &after_step)
+Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material,
+               const std::function<void(const std::string &)> &after_step)
 {
   const SoilProfile soil = soil_profile(scene);
   const Discretisation<2> space(mesh, box_supports(scene), scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
@@ -70,8 +70,8 @@ double settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material
         {
           statics.step(static_cast<double>(k) / steps - statics.time());
           if (after_step)
-            after_step(fmt::format("settles: step {:>2} of {}  {} trials, residual {:.1e}", k, steps,
-                                   statics.effort().trials, statics.residual()));
+            after_step(fmt::format("settles: step {:>2} of {}  {} trials, residual {:.1e}{}", k, steps,
+                                   statics.effort().trials, statics.residual(), statics.linear_effort().text()));
         }
     }
   catch (const RunFailure &failure)
@@ -86,6 +86,6 @@ double settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material
     largest = std::max(largest, std::abs(statics.displacement().local_element(i)));
   if (space.shared_out())
     MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, space.communicator());
-  return largest;
+  return {largest, statics.linear_effort()};
 }
 } // namespace isostat

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/deposit/scene.hpp"
+#include "fem/linear/linear_effort.hpp"
 #include "fem/material/material.hpp"
 
 #include <functional>
 
 namespace isostat
 {
+struct Settled
+{
+  double largest = 0;  ///< displacement, m
+  LinearEffort linear; ///< of an iterative linear solver
+};
+
 /// Brings the soil of a box from its K0 stress into equilibrium with its weight (buoyant under water) and the
 /// surcharge, drained, in ten steps: docs/theory_column.md, section 9. Packings by relaxation to a residual of 0.5 % of
 /// the force scale, formulas by Newton's method to 1e-6 where it converges, else by relaxation. Displacements are
@@ -14,9 +21,8 @@ namespace isostat
 /// wall is a part of these: the soil does not depend on it.   Collective.
 /// @param mesh  of the material's points
 /// @param after_step  called after each step with a line on it; what it throws goes through
-/// @return the largest displacement, m
 /// @throws RunFailure  the soil does not bear its weight and the surcharge
 /// tested: tests/apps/box_test.py
-double settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material,
-              const std::function<void(const std::string &)> &after_step = {});
+Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material,
+               const std::function<void(const std::string &)> &after_step = {});
 } // namespace isostat

@@ -61,13 +61,14 @@ void add_velocities(const ColumnScene &scene, Summary &summary)
   if (velocities.empty())
     return;
   const auto [slowest, fastest] = std::ranges::minmax(velocities);
-  summary.row("V_s in situ", "{} m/s in the middle of {}",
+  summary.row("V_s in situ", "{} m/s {} {}",
               velocities.size() <= few ? fmt::format("{:.4g}", fmt::join(velocities, ", "))
                                        : fmt::format("{:.4g} to {:.4g}", slowest, fastest),
+              scene.mesh.given ? "at the mean stress of" : "in the middle of",
               velocities.size() > 1 ? "the layers" : "the layer");
 }
 
-/// From the surface down.   @param used  as they were run
+/// From the surface down; layers of a mesh from a file lie at no one depth.   @param used  as they were run
 Json layers_json(const ColumnScene &scene, const std::vector<ColumnLayer> &used)
 {
   Json layers = Json::array();
@@ -76,8 +77,8 @@ Json layers_json(const ColumnScene &scene, const std::vector<ColumnLayer> &used)
     {
       const ColumnLayer &layer = scene.layers[k];
       layers.push_back({{"name", layer.name},
-                        {"top", top},
-                        {"bottom", top + layer.thickness},
+                        {"top", scene.mesh.given ? Json() : Json(top)},
+                        {"bottom", scene.mesh.given ? Json() : Json(top + layer.thickness)},
                         {"material", material_names[static_cast<int>(layer.material)]},
                         {"density", layer.density},
                         {"shear_modulus", layer.from_formula() ? Json(layer.small_strain_modulus()) : Json()},
@@ -259,8 +260,8 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
   if (s.box_motion)
     add_box_motion(*s.box_motion, mesh_spec(scene), summary);
   if (s.box_motion && p.gamma > 0.1 && !scene.analysis.large_strain)
-    summary.row("large strains", "beyond 10 %, but taken as small: displacements have an error of their order. Give "
-                                 "analysis.large_strain = true");
+    summary.row("large strains", "beyond 10 %, but taken as small: displacements have an error of their order{}",
+                scene.has_grains() ? ". Give analysis.large_strain = true" : "");
   if (s.grains)
     add_grains(*s.grains, summary);
   summary["depths"] = s.point_depths;

@@ -2,6 +2,7 @@
 // tested: tests/fem/solve/statics_ranks_test.cpp
 #pragma once
 #include <cstdint>
+#include <fmt/format.h>
 #include <string>
 
 namespace isostat
@@ -18,6 +19,12 @@ struct LinearEffort
     return {method.empty() ? other.method : method, solves + other.solves, iterations + other.iterations,
             most > other.most ? most : other.most};
   }
-  double mean() const { return solves > 0 ? static_cast<double>(iterations) / static_cast<double>(solves) : 0; }
+  /// At the end of a line of progress; empty: a direct solution.
+  std::string text() const
+  {
+    return solves == 0 ? ""
+                       : fmt::format("  {}: {:.1f} iterations", method,
+                                     static_cast<double>(iterations) / static_cast<double>(solves));
+  }
 };
 } // namespace isostat

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
+#include <sstream>
 
 namespace isostat
 {
 struct LinearSolver::Parts
 {
-  std::string prefix;
+  std::string prefix, given; ///< of options; these as they were given
   DirectSolver direct;
   std::function<void(KSP)> prepare;
   PetscOptions options = nullptr;
@@ -27,14 +29,25 @@ struct LinearSolver::Parts
 
 namespace
 {
-/// While it lives, PETSc takes options from these alone, and leaves messages to petsc_check().
+/// The innermost message of PETSc's last error.
+std::string first_message; // NOLINT: PETSc hands a context to its handlers, but not to who asks for the message
+
+PetscErrorCode keep_message(MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
+                            const char *message, void *)
+{
+  if (type == PETSC_ERROR_INITIAL)
+    first_message = message ? message : "";
+  return code;
+}
+
+/// While it lives, PETSc takes options from these alone, and leaves messages to petsc_check() and check_options().
 class OwnOptions
 {
 public:
   explicit OwnOptions(PetscOptions options)
   {
     petsc_check(PetscOptionsPush(options));
-    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    PetscPushErrorHandler(keep_message, nullptr);
   }
   ~OwnOptions()
   {
@@ -45,22 +58,44 @@ public:
   OwnOptions &operator=(const OwnOptions &) = delete;
 };
 
+/// Of the options with a prefix the one whose value a message names, else all.
+std::string options_of(const std::string &message, const std::string &given, const std::string &prefix)
+{
+  const auto words_of = [](const std::string &text) {
+    std::istringstream words(text);
+    return std::vector<std::string>(std::istream_iterator<std::string>(words), {});
+  };
+  std::vector<std::string> named;
+  for (std::string &word : words_of(message))
+    named.push_back(word.substr(0, word.find_last_not_of(".,:;") + 1));
+  std::string all, option;
+  for (const std::string &word : words_of(given))
+    {
+      if (word.starts_with("-" + prefix))
+        option = word;
+      else if (!option.empty() && std::ranges::find(named, word) != named.end())
+        return option + " " + word;
+      all += (all.empty() ? "" : " ") + word;
+    }
+  return all;
+}
+
 /// An error while options are read is one of the options.
-void check_options(PetscErrorCode code, const std::string &prefix)
+void check_options(PetscErrorCode code, const std::string &given, const std::string &prefix)
 {
   if (!code)
     return;
   const char *text = nullptr;
   PetscErrorMessage(code, &text, nullptr);
-  throw InputError(fmt::format("PETSc refuses an option that begins with -{}: {}. Give names and values of PETSc's "
-                               "manual pages.",
-                               prefix, text ? text : "invalid value"));
+  const std::string said = !first_message.empty() ? first_message : text ? text : "invalid value";
+  throw InputError(fmt::format("PETSc refuses {}: {}. Give names and values of PETSc's manual pages.",
+                               options_of(said, given, prefix), said.substr(0, said.find('\n'))));
 }
 } // namespace
 
 LinearSolver::LinearSolver(MPI_Comm communicator, std::string prefix, const std::string &options, DirectSolver direct,
                            std::function<void(KSP)> prepare)
-    : parts_(new Parts{std::move(prefix), std::move(direct), std::move(prepare)})
+    : parts_(new Parts{std::move(prefix), options, std::move(direct), std::move(prepare)})
 {
   parts_->is_checked = options.empty();
   petsc_check(PetscOptionsCreate(&parts_->options));
@@ -88,7 +123,7 @@ void LinearSolver::read_options()
   petsc_check(PCFactorSetZeroPivot(pc, 0));
   if (p.direct.ordering)
     petsc_check(PCFactorSetMatOrderingType(pc, p.direct.ordering));
-  check_options(KSPSetFromOptions(p.ksp), p.prefix);
+  check_options(KSPSetFromOptions(p.ksp), p.given, p.prefix);
   if (p.prepare)
     p.prepare(p.ksp);
   KSPType method = nullptr;
@@ -151,7 +186,7 @@ void LinearSolver::set_matrix(Mat matrix)
   if (p.is_checked)
     petsc_check(code);
   else
-    check_options(code, p.prefix);
+    check_options(code, p.given, p.prefix);
   petsc_check(KSPSetUpOnBlocks(p.ksp));
   PC pc = nullptr;
   PCFailedReason reason = PC_NOERROR;

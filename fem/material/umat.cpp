@@ -155,10 +155,11 @@ void Umat::set_initial_stress(std::span<const Stress> effective)
         }
       constexpr double most = 0.01;
       if (!(moved <= most * size))
-        throw InputError(
-            fmt::format("{}without strain UMAT moves the stress in situ by {:.4g} Pa, more than 1 % of it: "
-                        "the law does not bear it",
-                        at(i), moved));
+        throw InputError(fmt::format(
+            "{}without strain UMAT {}; it got {} PROPS and {} STATEV (NSTATV = {})", at(i),
+            std::isfinite(moved) ? fmt::format("moves the stress in situ by {:.4g} Pa, more than 1 % of it", moved)
+                                 : "makes the stress in situ no number",
+            law_.props.size(), law_.statev.size(), stride_ - first_statev));
       find_waves(i, row, ddsdde);
     }
   committed_ = std::move(rows);

@@ -22,7 +22,7 @@ constexpr Key in_layer[] = {
   {.path = "umat.statev", .field = member<&UmatParameters::statev>, .presence = Presence::optional,
    .value = "[0, 0.7]", .text = "STATEV, its state variables, in situ."},
   {.path = "umat.nstatv", .field = member<&UmatParameters::nstatv>, .presence = Presence::optional, .value = "10",
-   .range = {1, 1e7}, .reason = "because more would need 80 MB a point",
+   .range = {1, 1e7}, .reason = "because more would need 80 MB a point; leave it out for as many as umat.statev has",
    .text = "NSTATV, their number, at least that in `umat.statev`; those that it does not name are 0. Left out: as many "
            "as it has."},
 };

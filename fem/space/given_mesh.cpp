@@ -11,19 +11,6 @@ namespace
 {
 constexpr std::array anticlockwise = {0, 1, 3, 2}; ///< corners of a quadrilateral
 
-/// f(area, middle) of the two triangles of a cell.
-template <typename F>
-void for_each_triangle(const GivenMesh &mesh, const GivenMesh::Cell &cell, const F &f)
-{
-  for (int k : {1, 2})
-    {
-      const Place &a = mesh.places[cell.corners[0]], &b = mesh.places[cell.corners[anticlockwise[k]]],
-                  &c = mesh.places[cell.corners[anticlockwise[k + 1]]];
-      const double twice = (b[0] - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (b[2] - a[2]);
-      f(std::abs(twice) / 2, Place{(a[0] + b[0] + c[0]) / 3, 0, (a[2] + b[2] + c[2]) / 3});
-    }
-}
-
 /// Lowest and highest z of a convex cell on the vertical at x; both 0 if that misses it. Of two cells that share a
 /// vertical side the right one has it.
 std::array<double, 2> on_vertical(const GivenMesh &mesh, const GivenMesh::Cell &cell, double x)
@@ -62,26 +49,35 @@ bool GivenMesh::is_boundary(double x) const
   });
 }
 
+std::vector<GivenMesh::Part> GivenMesh::parts(unsigned layer) const
+{
+  std::vector<Part> parts;
+  for (const Cell &cell : cells)
+    for (int k : {1, 2})
+      {
+        const Place &a = places[cell.corners[0]], &b = places[cell.corners[anticlockwise[k]]],
+                    &c = places[cell.corners[anticlockwise[k + 1]]];
+        const double twice = (b[0] - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (b[2] - a[2]);
+        if (cell.layer == layer)
+          parts.push_back({std::abs(twice) / 2, {(a[0] + b[0] + c[0]) / 3, 0, (a[2] + b[2] + c[2]) / 3}});
+      }
+  return parts;
+}
+
 double GivenMesh::area(unsigned layer) const
 {
   double sum = 0;
-  for (const Cell &cell : cells)
-    if (cell.layer == layer)
-      for_each_triangle(*this, cell, [&](double area, const Place &) { sum += area; });
+  for (const Part &part : parts(layer))
+    sum += part.area;
   return sum;
 }
 
-Place GivenMesh::middle(unsigned layer) const
+double GivenMesh::mean(unsigned layer, const std::function<double(const Place &)> &value) const
 {
-  Place sum = {0, 0, 0};
-  const double all = area(layer);
-  for (const Cell &cell : cells)
-    if (cell.layer == layer)
-      for_each_triangle(*this, cell, [&](double area, const Place &middle) {
-        for (int axis : {0, 2})
-          sum[axis] += area / all * middle[axis];
-      });
-  return sum;
+  double sum = 0;
+  for (const Part &part : parts(layer))
+    sum += part.area * value(part.middle);
+  return sum / area(layer);
 }
 
 void GivenMesh::sort()

@@ -5,6 +5,7 @@
 #include "fem/space/ground.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -36,8 +37,15 @@ struct GivenMesh
   unsigned n_cells(unsigned layer) const;
   bool is_boundary(double x) const; ///< whether a corner of the boundary has this x
   // In 2D:
-  double area(unsigned layer) const;  ///< m2
-  Place middle(unsigned layer) const; ///< centre of area of its cells
+  struct Part
+  {
+    double area; ///< m2
+    Place middle;
+  };
+  std::vector<Part> parts(unsigned layer) const; ///< triangles, two of each of its cells
+  double area(unsigned layer) const;             ///< m2
+  /// By area, from the middles of its parts: exact of what is linear in each.
+  double mean(unsigned layer, const std::function<double(const Place &)> &value) const;
   /// What a borehole meets: cells from the surface down as layers of one cell each, whose other properties are those
   /// of the soil's.
   SoilProfile borehole(const SoilProfile &soil, double x) const;

@@ -11,6 +11,8 @@ import h5py
 import numpy as np
 
 from column_support import ColumnTest, settings
+from figures.column_results import Column
+from report import column_tables
 
 BOX = """title = "slope in a box"
 [mesh]
@@ -135,8 +137,15 @@ class Box(ColumnTest):
         summary = json.loads((self.folder / "drawn/summary.json").read_text(encoding="utf-8"))
         self.assertEqual(summary["linear_solver"], "bcgs, hypre")
         self.assertGreater(summary["linear_iterations"], summary["linear_solutions"])
+        table = column_tables.layers(Column(self.folder / "drawn"))  # whose layers lie at no one depth
+        self.assertNotIn("Depth (m)", table)
+        self.assertIn(f"{summary['layers'][0]['in_situ_shear_velocity']:.4g}", table)
+        self.assertEqual(summary["settling_linear_solver"], "gmres, gamg")
+        self.assertRegex((self.folder / "drawn/summary.txt").read_text(encoding="utf-8"), r"of settling +gmres, gamg: ")
         self.assert_refused(self.run_column(self.scene, "-o", "typo", *short, "--petsc", "-water_ksp_typ gmres"),
                             "-water_ksp_typ has no effect")
+        self.assert_refused(self.run_column(self.scene, "-o", "typo", *short, "--petsc", "ksp_type gmres"),
+                            "error: --petsc: analysis.petsc = ksp_type gmres; has the word ksp_type")
         for options, what in (("-water_ksp_type preonly -water_pc_type jacobi", "solves nothing"),
                               ("-water_pc_type jacobi -water_ksp_rtol 10", "must be below 1")):
             self.assert_refused(self.run_column(self.scene, "-o", "none", *short, "--petsc", options), what)

@@ -130,6 +130,7 @@ class SoilPointTest(FolderTest):
 
     def test_mistakes_are_refused(self):
         for arguments, words in (((scene(), "snad"), 'no layer of this name. Give one of "sand", "grains"'),
+                                 ((scene(name="grains"), "grains"), "several of this name.*layer.0"),
                                  ((scene(), "grains"), 'its material is "user"'),
                                  ((scene(), None, -1), "vertical_stress"),
                                  ((scene(), None, "1 Pa"), "vertical_stress: must be a number")):

@@ -7,6 +7,7 @@
 #include "fem/material/soil_point.hpp"
 #include "python/binding/given.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -42,6 +43,11 @@ std::size_t layer_of(const ColumnScene &scene, const std::optional<std::string> 
       const bool is_tested = layer.from_formula() || layer.material == LayerMaterial::umat;
       if (name ? layer.name == *name || fmt::format("layer.{}", k) == *name : is_tested)
         {
+          const auto alike = [&](const ColumnLayer &other) { return name && other.name == *name; };
+          if (std::ranges::count_if(scene.layers, alike) > 1)
+            throw InputError(fmt::format("layer \"{}\": the scene has several of this name. Give one by its number, "
+                                         "\"layer.{}\" for the first.",
+                                         *name, k));
           if (is_tested)
             return k;
           throw InputError(

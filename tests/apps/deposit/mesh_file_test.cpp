@@ -17,13 +17,18 @@ protected:
   {
     std::string name = testing::TempDir() + "isostat_mesh_XXXXXX";
     folder_ = mkdtemp(name.data());
-    std::ofstream(folder_ / "slope.msh") << test::gmsh_text<2>({10, 8, 0}, [](std::array<double, 3> at) {
+    write("slope.msh", [](std::array<double, 3> at) {
       at = test::PushedAbout<2>{10}(at);
       return std::array<double, 3>{8 * at[0], 5 * at[1], 0};
     });
   }
   ~MeshOfFile() override { std::filesystem::remove_all(folder_); }
 
+  template <typename Move>
+  void write(const std::string &name, const Move &move) const
+  {
+    std::ofstream(folder_ / name) << test::gmsh_text<2>({10, 8, 0}, move);
+  }
   ColumnScene read(const std::string &more, const Overrides &overrides = {}) const
   {
     const std::string text = "[mesh]\ndimension = 2\nsides = \"walls\"\nfile = \"slope.msh\"\n" + dry +
@@ -53,6 +58,16 @@ TEST_F(MeshOfFile, GivesLayersTheirThicknessAndStress)
   EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene) << to_toml(scene);
 }
 
+TEST_F(MeshOfFile, HasTheMeanStressOfALayerWhoseCentreIsNotInIt)
+{
+  write("bowl.msh", [](std::array<double, 3> at) {
+    return std::array<double, 3>{8 * at[0], 12 * std::pow(at[0] - 0.5, 2) + 0.4 * at[1], 0};
+  });
+  const ColumnScene scene = read(dynamic, {"mesh.file=bowl.msh"}); // of area: 0.8 m above the soil
+  EXPECT_NEAR_BECAUSE(scene.layers[0].in_situ_depth, 0.2, 1e-9, "round-off");
+  EXPECT_NEAR_BECAUSE(scene.layers[0].in_situ_pressure, 2. / 3 * 2000 * 9.81 * 0.2, 1e-5, "round-off of 3e3 Pa");
+}
+
 TEST_F(MeshOfFile, RefusesWhatTheFileSays)
 {
   refused("thickness = \"4 m\"\n" + dynamic, {"layer.0.thickness = 4 m; and cells follow from mesh.file", "Remove"});
@@ -62,6 +77,10 @@ TEST_F(MeshOfFile, RefusesWhatTheFileSays)
   refused(dynamic, {"mesh.ground_x", "no effect with mesh.file"}, {"mesh.ground_x=['0 m', '8 m']"});
   refused(dynamic, {"mesh.file = other.msh; does not exist"}, {"mesh.file=other.msh"});
   refused(dynamic, {"physical group \"soil\", which is no layer of the scene", "\"silt\""}, {"layer.0.name=silt"});
+  write("mm.msh", [](std::array<double, 3> at) { return std::array<double, 3>{8e3 * at[0], 5e3 * at[1], 0}; });
+  refused(dynamic, {"mesh.file = mm.msh; is 8000 m wide and 5000 m high", "drawn in mm by 0.001"},
+          {"mesh.file=mm.msh"});
+  refused("[[layer]]\nname = \"soil\"\n" + dynamic, {"layer.1.name = soil; is that of another layer"});
   refused(dynamic, {"slope.angle", "upright"}, {"slope.angle=3 deg", "mesh.sides=tied"});
 }
 } // namespace

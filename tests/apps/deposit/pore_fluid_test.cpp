@@ -54,6 +54,7 @@ TEST(PoreFluidOfAScene, PermeabilityThatVariesNeedsWaterThatMoves)
   EXPECT_TRUE(soil_profile(scene).permeability_varies());
   EXPECT_EQ(parse_column_scene(to_toml(scene), "s"), scene);
   expect_overrides_refused(coupled, {"layer.0.permeability_law=hazen"}, {"must be \"constant\" or \"kozeny-carman\""});
+  expect_overrides_refused(coupled, {law[0], "layer.0.permeability=0 m/s"}, {"no effect on a permeability of 0 m/s"});
   expect_overrides_refused(smallest, law, {"layer.0.permeability_law", "has no effect where no water moves"});
   expect_overrides_refused(layer + undrained + dynamic, law, {"has no effect where no water moves"});
 }

@@ -105,7 +105,7 @@ TEST(Umat, NamesWhatIsWrong)
   expect_parts(told(1, 1e-3), {"umat: point 1: layer.0 (sand), depth 2 m: ", "smaller increment (PNEWDT = 0.25)"});
   expect_parts(told(2, 1e-3), {"umat: point 1: layer.0 (sand), depth 2 m: ", "not a number"});
   expect_parts(told(1, 0), {"umat: point 0: ", "rejects the stress in situ (PNEWDT = 0.25)"});
-  expect_parts(told(2, 0), {"umat: point 0: ", "moves the stress in situ by inf"});
+  expect_parts(told(2, 0), {"umat: point 0: ", "makes the stress in situ no number; it got 4 PROPS and 0 STATEV"});
   expect_parts(told(3, 0), {"umat: point 0: ", "moves the stress in situ by 6000 Pa, more than 1 %"});
   expect_parts(told(4, 0), {"umat: point 0: no wave runs with DDSDDE", "fill it in every call"});
   EXPECT_EQ(told(0, 0), "accepted");

@@ -170,7 +170,10 @@ TEST(StaticsRanks, OptionsThatCannotBe)
   };
   EXPECT_THAT(refused("-statics_ksp_type cg -statics_pc_gamg_typo 3"),
               testing::HasSubstr("-statics_pc_gamg_typo has no effect"));
-  EXPECT_THAT(refused("-statics_ksp_type kg"), testing::HasSubstr("refuses an option that begins with -statics_"));
+  EXPECT_THAT(refused("-statics_pc_type jacobi -statics_ksp_type kg"),
+              testing::HasSubstr("refuses -statics_ksp_type kg: "));
+  EXPECT_THAT(refused("-statics_ksp_type cg -statics_ksp_rtol small"),
+              testing::HasSubstr("refuses -statics_ksp_rtol small: "));
   try
     {
       Footing<2>(MPI_COMM_WORLD, false, false, "-statics_ksp_type cg -statics_pc_type jacobi -statics_ksp_max_it 2");

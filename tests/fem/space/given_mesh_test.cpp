@@ -92,7 +92,7 @@ TEST(GivenMesh, IsReadFromFormat41)
   EXPECT_EQ(mesh->ground, (GroundLine{{{0, 3}, {4, 2}}}));
   EXPECT_EQ(mesh->width(), 4);
   EXPECT_NEAR_BECAUSE(mesh->area(0), 6, 1e-12, "round-off");
-  EXPECT_NEAR_BECAUSE(mesh->middle(1)[2], 0.5, 1e-12, "round-off");
+  EXPECT_NEAR_BECAUSE(mesh->mean(1, [](const Place &place) { return place[2]; }), 0.5, 1e-12, "round-off");
   EXPECT_TRUE(mesh->is_boundary(4));
   EXPECT_FALSE(mesh->is_boundary(2));
 }
