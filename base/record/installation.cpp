@@ -16,7 +16,7 @@ fs::path shared_folder()
                          std::string(code.dli_fname).ends_with(".so");
   for (fs::path at = is_module ? fs::path(code.dli_fname).parent_path() : fs::path(); at.has_relative_path();
        at = at.parent_path())
-    if (const fs::path folder = at / "share" / "isostat"; fs::is_directory(folder, failure))
+    if (fs::path folder = at / "share" / "isostat"; fs::is_directory(folder, failure))
       return folder;
   return program.parent_path().parent_path() / "share" / "isostat";
 }

@@ -52,7 +52,8 @@ constexpr Key keys[] = {
 /// The file of an installed sand.   @throws InputError  there is none of this name
 fs::path installed_sand(const SceneDocument &document, const std::string &name)
 {
-  const fs::path folder = shared_folder() / "scenes" / "sands", file = folder / (name + ".toml");
+  const fs::path folder = shared_folder() / "scenes" / "sands";
+  fs::path file = folder / (name + ".toml");
   std::error_code ignored;
   if (!name.empty() && name.find('/') == std::string::npos && fs::is_regular_file(file, ignored))
     return file;

@@ -332,7 +332,7 @@ class OtherPrograms(ReportTest):
         table = {"thickness": "5 m", "material": "umat", "permeability": "1e-5 m/s", "k0": 0.5,
                  "umat": {"library": "sand.so", "props": [80e6, 0.3, 2], "statev": [0]}}
         column = SimpleNamespace(
-            summary={"layers": []}, velocities=None, damping={"mass_damping": 0},
+            summary={"layers": []}, velocities=None, is_drawn=False, damping={"mass_damping": 0},
             scene={"layer": [table], "water": {"drainage": "dry"}},
             layers=[{"height": 5.0, "density": 2000.0, "velocity": None, "name": ""}], water={"gravity": 9.81})
         with mock.patch.object(column_tables.site_response, "site", lambda _: {}):
