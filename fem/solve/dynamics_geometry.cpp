@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What of Dynamics follows the soil: cells (updated Lagrangian), and the permeability of its void ratio.
+#include "fem/linear/with_ghosts.hpp"
 #include "fem/ranks/failure.hpp"
 #include "fem/solve/dynamics.hpp"
 #include "fem/water/permeability.hpp"
@@ -19,24 +20,11 @@ constexpr double late_permeability = 1e-2;
 /// moves the water is wrong by that share at most.
 constexpr double late_geometry = 2e-3;
 
-/// Values of other ranks are there while f(u) runs.
-template <typename F>
-void with_ghosts(const FiniteElementSpace &space, const Vector &u, const F &f)
-{
-  if (space.shared_out())
-    u.update_ghost_values();
-  f(u);
-  if (space.shared_out())
-    u.zero_out_ghost_values();
-}
-
 /// The same on all ranks that the mesh is shared out over.
 void deform(const FiniteElementSpace &space, const Vector &u, CellGeometry &at)
 {
-  with_ghosts(space, u, [&](const Vector &whole) {
-    const std::optional<RankFailure> failure = failure_of([&] { space.deform(whole, at); });
-    fail_together(space.communicator(), failure);
-  });
+  const WithGhosts ghosts(u);
+  fail_together(space.communicator(), failure_of([&] { space.deform(u, at); }));
 }
 } // namespace
 
@@ -76,7 +64,10 @@ void Dynamics::follow_deformation()
   Vector change = u_;
   change -= deformed_->found_at;
   std::vector<Gradient> gradients(space_.n_points());
-  with_ghosts(space_, change, [&](const Vector &whole) { space_.gradients(whole, gradients); });
+  {
+    const WithGhosts ghosts(change);
+    space_.gradients(change, gradients);
+  }
   const bool near = std::ranges::all_of(gradients, [](const Gradient &h) {
     return std::ranges::all_of(h, [](double entry) { return std::abs(entry) <= late_geometry; });
   });

@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/water/biot_integrals.hpp"
 
+#include "fem/linear/with_ghosts.hpp"
+
 namespace isostat
 {
 namespace
 {
-/// Values of other ranks that a vector's cells use are there while this lives.
-class WithGhosts
-{
-public:
-  explicit WithGhosts(const Vector &vector) : vector_(vector) { vector_.update_ghost_values(); }
-  ~WithGhosts() { vector_.zero_out_ghost_values(); }
-  WithGhosts(const WithGhosts &) = delete;
-  WithGhosts &operator=(const WithGhosts &) = delete;
-
-private:
-  const Vector &vector_;
-};
-
 Eigen::VectorXd gathered(const Vector &x, const unsigned *unknowns, std::size_t n)
 {
   Eigen::VectorXd local(n);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/water/permeability.hpp"
 
+#include "fem/linear/with_ghosts.hpp"
 #include "fem/water/pore_fluid.hpp"
 
 #include <algorithm>
@@ -47,9 +48,10 @@ PorousPoints porous_points(const FiniteElementSpace &space, std::span<const doub
 std::vector<double> volume_strains(const FiniteElementSpace &space, const Vector &u)
 {
   std::vector<Gradient> gradients(space.n_points(), Gradient{});
-  u.update_ghost_values();
-  space.gradients(u, gradients);
-  u.zero_out_ghost_values();
+  {
+    const WithGhosts ghosts(u);
+    space.gradients(u, gradients);
+  }
   std::vector<double> strains;
   for (const Gradient &h : gradients)
     strains.push_back(h[0] + h[4] + h[8]);
