@@ -98,13 +98,20 @@ void read_entities(Words &words, GmshFile &contents)
       }
 }
 
+/// How many blocks a section of 4.1 has; one of 2.2 is one without a head.
+unsigned n_blocks(Words &words, bool blocks)
+{
+  if (!blocks)
+    return 1;
+  const unsigned n = words.count();
+  words.skip(3);
+  return n;
+}
+
 void read_nodes(Words &words, GmshFile &contents)
 {
   const bool blocks = contents.version > 4;
-  const unsigned n_blocks = blocks ? words.count() : 1;
-  if (blocks)
-    words.skip(3);
-  for (unsigned block = 0; block < n_blocks; ++block)
+  for (unsigned left = n_blocks(words, blocks); left > 0; --left)
     {
       unsigned dimension = 0, parameters = 0;
       if (blocks)
@@ -131,10 +138,7 @@ void read_nodes(Words &words, GmshFile &contents)
 void read_elements(Words &words, GmshFile &contents)
 {
   const bool blocks = contents.version > 4;
-  const unsigned n_blocks = blocks ? words.count() : 1;
-  if (blocks)
-    words.skip(3);
-  for (unsigned block = 0; block < n_blocks; ++block)
+  for (unsigned left = n_blocks(words, blocks); left > 0; --left)
     {
       GmshElement element = {};
       if (blocks)
