@@ -165,18 +165,15 @@ MaterialState Viscoelastic::pack() const
   out.value(damping_);
   out.block(state.common);
   state.common = out.take();
-  for (std::size_t i = 0; i < n_points(); ++i)
-    {
-      out.numbers({&committed_[i * row], row});
-      out.append(state.points[i]);
-      state.points[i] = out.take();
-    }
+  add_rows(state, committed_, n_points());
   return state;
 }
 
 void Viscoelastic::unpack(const MaterialState &state)
 {
-  ByteReader in(state.common, name());
+  std::vector<double> rows(committed_.size());
+  MaterialState of_inner = taken_from_rows(state, name(), rows, n_points());
+  ByteReader in(of_inner.common, name());
   in.expect(in.text(), name());
   double damping = 0;
   in.value(damping);
@@ -184,16 +181,7 @@ void Viscoelastic::unpack(const MaterialState &state)
     in.fail(fmt::format("its damping is {}", damping));
   const auto common = in.block();
   in.expect_end();
-  in.expect(state.points.size(), n_points(), "points");
-  MaterialState of_inner{{common.begin(), common.end()}, {}};
-  std::vector<double> rows(committed_.size());
-  for (std::size_t i = 0; i < n_points(); ++i)
-    {
-      ByteReader point(state.points[i], name());
-      point.numbers({&rows[i * row], row}, "numbers in a point");
-      const auto rest = point.rest();
-      of_inner.points.emplace_back(rest.begin(), rest.end());
-    }
+  of_inner.common = {common.begin(), common.end()};
   inner_->unpack(of_inner); // refuses before it changes anything
   committed_ = std::move(rows);
   has_trial_ = false;
