@@ -2,19 +2,16 @@
 #include "fem/material/corotational.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <utility>
 
 namespace isostat
 {
 namespace
 {
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-constexpr Gradient no_rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-constexpr std::size_t entries = no_rotation.size();
+constexpr std::size_t entries = 9; ///< of R
 
-Eigen::Map<const Matrix> matrix(const Gradient &h) { return Eigen::Map<const Matrix>(h.data()); }
-Eigen::Map<Matrix> matrix(Gradient &h) { return Eigen::Map<Matrix>(h.data()); }
+Eigen::Map<const Matrix> matrix(const double *entry) { return Eigen::Map<const Matrix>(entry); }
+Eigen::Map<Matrix> matrix(double *entry) { return Eigen::Map<Matrix>(entry); }
 
 /// The rotation of a spin.
 Matrix rotation(const Matrix &spin)
@@ -47,14 +44,18 @@ Stiffness turning_of_stress(const Matrix &r)
 } // namespace
 
 Corotational::Corotational(std::unique_ptr<Material> law)
-    : law_(std::move(law)), committed_(law_->n_points(), no_rotation), trial_(committed_), strains_(committed_)
-{}
+    : OuterMaterial("corotational", std::move(law), {}, entries), strains_(n_points())
+{
+  for (std::size_t i = 0; i < n_points(); ++i)
+    matrix(&committed_[i * entries]).setIdentity();
+}
 
 void Corotational::set_initial_stress(std::span<const Stress> effective)
 {
-  law_->set_initial_stress(effective);
-  std::ranges::fill(committed_, no_rotation);
+  inner_->set_initial_stress(effective);
   has_trial_ = false;
+  for (std::size_t i = 0; i < n_points(); ++i)
+    matrix(&committed_[i * entries]).setIdentity();
 }
 
 void Corotational::trial(std::span<const Gradient> increments, std::span<Stress> stresses)
@@ -62,54 +63,25 @@ void Corotational::trial(std::span<const Gradient> increments, std::span<Stress>
   has_trial_ = false;
   for (std::size_t i = 0; i < n_points(); ++i)
     {
-      const Matrix h = matrix(increments[i]), middle = h * (Matrix::Identity() + h / 2).inverse(),
-                   spin = (middle - middle.transpose()) / 2;
-      const Matrix half_turned = rotation(spin / 2) * matrix(committed_[i]);
-      matrix(strains_[i]) = half_turned.transpose() * (middle - spin) * half_turned;
-      matrix(trial_[i]) = rotation(spin) * matrix(committed_[i]);
+      const Matrix before = matrix(&committed_[i * entries]);
+      const Matrix h = matrix(increments[i].data()), middle = h * (Matrix::Identity() + h / 2).inverse(),
+                   spin = (middle - middle.transpose()) / 2, half_turned = rotation(spin / 2) * before;
+      matrix(strains_[i].data()) = half_turned.transpose() * (middle - spin) * half_turned;
+      matrix(&trial_[i * entries]) = rotation(spin) * before;
     }
-  law_->trial(strains_, stresses);
+  inner_->trial(strains_, stresses);
   for (std::size_t i = 0; i < n_points(); ++i)
-    stresses[i] = turned(matrix(trial_[i]), stresses[i]);
+    stresses[i] = turned(matrix(&trial_[i * entries]), stresses[i]);
   has_trial_ = true;
-}
-
-void Corotational::commit()
-{
-  law_->commit();
-  if (std::exchange(has_trial_, false))
-    std::swap(committed_, trial_);
-}
-
-void Corotational::rollback()
-{
-  law_->rollback();
-  has_trial_ = false;
 }
 
 void Corotational::stiffness(std::span<Stiffness> tangents) const
 {
-  law_->stiffness(tangents);
+  inner_->stiffness(tangents);
   for (std::size_t i = 0; i < n_points(); ++i)
     {
-      const Stiffness m = turning_of_stress(matrix(has_trial_ ? trial_[i] : committed_[i]));
+      const Stiffness m = turning_of_stress(matrix(&(has_trial_ ? trial_ : committed_)[i * entries]));
       tangents[i] = m * tangents[i] * m.transpose();
     }
-}
-
-MaterialState Corotational::pack() const
-{
-  MaterialState state = law_->pack();
-  add_rows(state, {reinterpret_cast<const double *>(committed_.data()), entries * n_points()}, n_points());
-  return state;
-}
-
-void Corotational::unpack(const MaterialState &state)
-{
-  std::vector<Gradient> rotations(n_points());
-  const std::span numbers(reinterpret_cast<double *>(rotations.data()), entries * n_points());
-  law_->unpack(taken_from_rows(state, name(), numbers, n_points())); // refuses before it changes anything
-  committed_ = std::move(rotations);
-  has_trial_ = false;
 }
 } // namespace isostat

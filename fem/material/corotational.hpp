@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/material/material.hpp"
-
-#include <memory>
+#include "fem/material/outer_material.hpp"
 
 namespace isostat
 {
@@ -16,28 +14,18 @@ namespace isostat
 /// with D symmetric and W the spin. Strains add up to the logarithmic one to second order, a cycle leaves none, and a
 /// rotation by any angle turns the stress exactly. The rate is Jaumann's: in simple shear beyond 100 % an elastic
 /// stress oscillates.   tested: tests/fem/material/corotational_test.cpp, tests/fem/solve/dynamics_geometry_test.cpp
-class Corotational : public Material
+class Corotational : public OuterMaterial
 {
 public:
   explicit Corotational(std::unique_ptr<Material> law);
 
-  std::string name() const override { return law_->name(); }
-  std::size_t n_points() const override { return law_->n_points(); }
   void set_initial_stress(std::span<const Stress> effective) override;
-  void set_time_step(double seconds) override { law_->set_time_step(seconds); }
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
-  void commit() override;
-  void rollback() override;
   /// Of the Jaumann rate.
   void stiffness(std::span<Stiffness> tangents) const override;
-  void wave_moduli(std::span<WaveModuli> moduli) const override { law_->wave_moduli(moduli); }
-  MaterialState pack() const override;
-  void unpack(const MaterialState &state) override;
+  void wave_moduli(std::span<WaveModuli> moduli) const override { inner_->wave_moduli(moduli); }
 
 private:
-  std::unique_ptr<Material> law_;
-  std::vector<Gradient> committed_, trial_; ///< R of each point, row by row
-  std::vector<Gradient> strains_;
-  bool has_trial_ = false;
+  std::vector<Gradient> strains_; ///< of one trial
 };
 } // namespace isostat

@@ -48,37 +48,4 @@ void unpack_rows(const MaterialState &state, const std::string &material, std::s
       in.expect_end();
     }
 }
-
-void add_rows(MaterialState &state, std::span<const double> values, std::size_t n_points)
-{
-  const auto add = [](std::span<const double> numbers, std::vector<std::byte> &bytes) {
-    ByteWriter out;
-    out.numbers(numbers);
-    out.append(bytes);
-    bytes = out.take();
-  };
-  if (state.points.empty())
-    return add(values, state.common);
-  for (std::size_t k = 0; k < n_points; ++k)
-    add(values.subspan(k * (values.size() / n_points), values.size() / n_points), state.points[k]);
-}
-
-MaterialState taken_from_rows(const MaterialState &state, const std::string &material, std::span<double> values,
-                              std::size_t n_points)
-{
-  const auto take = [&](std::span<double> numbers, std::vector<std::byte> &bytes) {
-    ByteReader in(bytes, material);
-    in.numbers(numbers, "numbers in a point");
-    const auto rest = in.rest();
-    bytes = std::vector(rest.begin(), rest.end());
-  };
-  MaterialState other = state;
-  if (state.points.empty())
-    take(values, other.common);
-  else
-    ByteReader({}, material).expect(state.points.size(), n_points, "points");
-  for (std::size_t k = 0; k < state.points.size(); ++k)
-    take(values.subspan(k * (values.size() / n_points), values.size() / n_points), other.points[k]);
-  return other;
-}
 } // namespace isostat

@@ -24,8 +24,4 @@ struct MaterialState
 std::vector<std::vector<std::byte>> packed_rows(std::span<const double> values, std::size_t n_points);
 void unpack_rows(const MaterialState &state, const std::string &material, std::span<double> values,
                  std::size_t n_points);
-/// Rows in front of the bytes of the points of another state, which may be kept as a whole; and that state again.
-void add_rows(MaterialState &state, std::span<const double> values, std::size_t n_points);
-MaterialState taken_from_rows(const MaterialState &state, const std::string &material, std::span<double> values,
-                              std::size_t n_points);
 } // namespace isostat

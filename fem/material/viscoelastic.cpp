@@ -61,8 +61,7 @@ double ZenerBody::at_one_hertz() const
 double ZenerBody::unrelaxed() const { return std::accumulate(shares.begin(), shares.end(), 1.0); }
 
 Viscoelastic::Viscoelastic(std::unique_ptr<Material> inner, double damping)
-    : inner_(std::move(inner)), damping_(damping), relaxation_(damping), committed_(row * inner_->n_points(), 0.0),
-      trial_(committed_), moduli_(inner_->n_points())
+    : OuterMaterial("viscoelastic", std::move(inner), {damping}, row), relaxation_(damping), moduli_(n_points())
 {
   std::vector<Stress> start(n_points());
   inner_->trial(std::vector<Gradient>(n_points(), Gradient{}), start);
@@ -120,19 +119,6 @@ void Viscoelastic::trial(std::span<const Gradient> increments, std::span<Stress>
   has_trial_ = true;
 }
 
-void Viscoelastic::commit()
-{
-  inner_->commit();
-  if (std::exchange(has_trial_, false))
-    std::swap(committed_, trial_);
-}
-
-void Viscoelastic::rollback()
-{
-  inner_->rollback();
-  has_trial_ = false;
-}
-
 void Viscoelastic::stiffness(std::span<Stiffness> tangents) const
 {
   inner_->stiffness(tangents);
@@ -155,35 +141,5 @@ void Viscoelastic::wave_moduli(std::span<WaveModuli> moduli) const
   inner_->wave_moduli(moduli);
   for (WaveModuli &m : moduli)
     m = {relaxation_.unrelaxed() * m.p, relaxation_.unrelaxed() * m.s};
-}
-
-MaterialState Viscoelastic::pack() const
-{
-  MaterialState state = inner_->pack();
-  ByteWriter out;
-  out.text(name());
-  out.value(damping_);
-  out.block(state.common);
-  state.common = out.take();
-  add_rows(state, committed_, n_points());
-  return state;
-}
-
-void Viscoelastic::unpack(const MaterialState &state)
-{
-  std::vector<double> rows(committed_.size());
-  MaterialState of_inner = taken_from_rows(state, name(), rows, n_points());
-  ByteReader in(of_inner.common, name());
-  in.expect(in.text(), name());
-  double damping = 0;
-  in.value(damping);
-  if (damping != damping_)
-    in.fail(fmt::format("its damping is {}", damping));
-  const auto common = in.block();
-  in.expect_end();
-  of_inner.common = {common.begin(), common.end()};
-  inner_->unpack(of_inner); // refuses before it changes anything
-  committed_ = std::move(rows);
-  has_trial_ = false;
 }
 } // namespace isostat
