@@ -25,7 +25,7 @@ constexpr Key in_mesh[] = {
   {.path = "sides", .field = member<&ColumnMesh::sides>, .value = "tied", .choices = side_choices,
    .text = "tied: opposite points of the sides move as one, as in ground without end; walls: a box (dimension 2) "
            "whose smooth walls move with its rigid base; free-field: a box whose waves leave through dashpots against "
-           "the motion of level ground beside each side (dynamic, small strain, the ground level there). The soil of a "
+           "the motion of level ground next to each side (dynamic, small strain, the ground level there). The soil of a "
            "box first settles into equilibrium from K0 stresses: docs/theory_column.md, section 9."},
   {.path = "file", .field = member<&ColumnMesh::file>, .presence = Presence::optional, .value = "slope.msh",
    .text = "A mesh of Gmsh (text, format 2.2 or 4.1) of quadrilaterals of any shape, in dimension 2 and not of a biaxial "
@@ -120,7 +120,7 @@ void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
                     "must be 0 m in a box, where water covers all soil, or none if drainage is \"dry\".");
 }
 
-/// The ground beside a free field is level, in whose column no static shear stress acts.
+/// The ground next to a free field is level, in whose column no static shear stress acts.
 void check_level_ends(const SceneDocument &document, const ColumnScene &scene)
 {
   const auto points = ground_line(scene.mesh).points;

@@ -14,7 +14,7 @@ namespace isostat
 std::unique_ptr<const FiniteElementSpace> deposit_space(const ColumnScene &scene, const UserMaterials &user);
 
 /// Those of both sides, if the scene has them; their soil is that of the scene at the sides.   Collective.
-/// @param settings  of the block   tested: tests/apps/canyon_test.py
+/// @param settings  of the block   tested: tests/apps/box_test.py, tests/apps/grain_box_test.py
 std::vector<std::shared_ptr<FreeField>> free_fields(const ColumnScene &scene, const DynamicsSettings &settings,
                                                     int threads, const UserMaterials &user);
 } // namespace isostat

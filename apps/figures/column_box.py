@@ -128,8 +128,8 @@ def box_surface(column):
 
 
 def amplification(column, axis, f):
-    """x of the corners of the surface, m, and Fourier amplitudes of their acceleration over the input's (f x corners) at
-    frequencies f, Hz: second differences of the maps' displacement, less what they lose of a sine."""
+    """x of the corners of the surface, m, and Fourier amplitudes of their acceleration over the input's (f x corners)
+    at frequencies f, Hz: second differences of the maps' displacement, corrected to those of a sine."""
     indices, x = Mesh(column.maps).surface()
     time, w = column.maps["time"], 2 * np.pi * np.asarray(f, dtype=float)[:, None]
     dt = (time[-1] - time[0]) / (len(time) - 1)

@@ -24,9 +24,9 @@ def runs(_options):
 
 
 def trifunac(x, eta, terms=30):
-    """|w| of the surface over that of level ground (2 times the incident wave) at x radii from the middle of the canyon:
-    the series of Trifunac (1973), doi:10.1002/eqe.4290010307, for vertical incidence: cos(k z) = sum e_n J_2n(k r) cos(2
-    n phi), and waves that leave take dw/dr off the surface of the canyon."""
+    """|w| of the surface over that of level ground (2 times the incident wave) at x radii from the middle of the
+    canyon: the series of Trifunac (1973), doi:10.1002/eqe.4290010307, for vertical incidence. cos(k z) is the sum of
+    e_n J_2n(k r) cos(2 n phi), and waves that leave take dw/dr off the surface of the canyon."""
     k = np.pi * eta  # of unit radius
     r, phi = np.maximum(np.abs(x), 1), np.arccos(np.clip(x, -1, 1))
     scattered = sum((2 if n else 1) * np.cos(2 * n * phi) * jvp(2 * n, k) / h2vp(2 * n, k) * hankel2(2 * n, k * r)

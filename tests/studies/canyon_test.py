@@ -21,7 +21,7 @@ class Canyon(ColumnTest):
         x, pairs = canyon.compared(column)
         self.assertGreater(len(x), 60)
         for (found, exact), tolerance in zip(pairs, (0.02, 0.03)):
-            self.assert_near(found, exact, tolerance, "sides and base six and five radii away, elements of half a radius")
+            self.assert_near(found, exact, tolerance, "sides and base six and five radii away, half-radius elements")
 
     def test_the_exact_solution_is_level_ground_far_away(self):
         for eta in canyon.ETA:
