@@ -241,7 +241,7 @@ void check_petsc(const SceneDocument &document, const ColumnScene &scene)
 {
   const bool shaken = scene.analysis.kind == AnalysisKind::dynamic;
   std::vector<std::string_view> prefixes;
-  if (!shaken || scene.mesh.sides == Sides::walls)
+  if (!shaken || scene.mesh.sides != Sides::tied)
     prefixes.push_back("-statics_");
   if (shaken && scene.water.drainage == Drainage::coupled)
     prefixes.push_back("-water_");

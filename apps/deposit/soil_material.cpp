@@ -213,7 +213,7 @@ std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &m
       const double p = -scene.biaxial.confinement;
       return std::vector<Stress>(mesh.n_points(), Stress{p, p, p, 0, 0, 0});
     }
-  if (scene.mesh.sides == Sides::walls || scene.mesh.given)
+  if (scene.mesh.sides != Sides::tied || scene.mesh.given)
     return below_ground(scene, mesh);
   const SoilProfile soil = soil_profile(scene);
   std::vector<Stress> stresses(mesh.n_points());

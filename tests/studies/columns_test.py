@@ -16,7 +16,7 @@ from support import BIN, AppTest
 sys.argv[0] = str(BIN / "isostat")  # next to the programs
 
 LIBRARIES = {"column_ensemble": (300, 3000), "column_error": (250, 500, 1000, 2000, 4000)}
-OTHERS = "column_dissipation", "column_fitted", "column_others", "column_phenomena"
+OTHERS = "canyon", "column_dissipation", "column_fitted", "column_others", "column_phenomena"
 
 
 class StudiesOfColumns(AppTest):
