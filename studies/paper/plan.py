@@ -184,7 +184,6 @@ def cyclic(grains, seeds, whole):
 def onset(grains, seeds, whole):
     """Figures 3 and 4: one of these preparations slowly, for what happens around and after the onset; and the same
     specimens at the default's rate, for what the rate does to the number of cycles."""
-    seeds = range(1, len(seeds) + 3) if whole else seeds
     return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), pace=pace, **ends(whole))
             for pace in (SLOW, DEFAULT) for seed in seeds]
 
