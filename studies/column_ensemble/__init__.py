@@ -104,7 +104,8 @@ QUANTITIES = (("thickness", "liquefied thickness", "m", 1, 2), ("strained", "thi
               ("gamma", "largest strain", "%", 100, 1), ("onset", "first r_u > 0.95", "s", 1, 2),
               ("pga", "peak surface below 25 Hz", "m/s2", 1, 2), ("sa", "S_a(0.3 s)", "m/s2", 1, 2),
               ("arias", "Arias intensity", "m/s", 1, 3), ("settlement", "settlement", "mm", 1000, 1),
-              ("redundancy", "mean I_R at the end", "", 1, 2), ("steps", "time steps or evaluations of a packing", "", 1, 0))
+              ("redundancy", "mean I_R at the end", "", 1, 2),
+              ("steps", "time steps or evaluations of a packing", "", 1, 0))
 
 
 @dataclasses.dataclass

@@ -97,7 +97,8 @@ class Results:
         return rows
 
     def half_cycles(self):
-        return [{"specimen": run.packing.label, "pace": run.pace, "seed": run.seed, "half cycle": k + 1, **row} for run, history in self.of("cyclic") for k, row in enumerate(states.half_cycles(history))]
+        return [{"specimen": run.packing.label, "pace": run.pace, "seed": run.seed, "half cycle": k + 1, **row}
+                for run, history in self.of("cyclic") for k, row in enumerate(states.half_cycles(history))]
 
     def cyclic_curves(self):
         """Of slow tests: means over the seeds that liquefy, on the axis of states.phases()."""

@@ -13,8 +13,9 @@ from studies.tables import write_tables
 DEFAULTS, QUICK = {"seeds": 6}, {"seeds": 1}
 UNDAMPED = {"free_grain_damping": 0}
 SETTINGS = [DYNAMIC, of("local damping 0.2 in place of dashpots", contact_damping=0, damping=0.2),
-            of("walls push the grains", carry_grains=False), of("half the damping of rattlers", free_grain_damping=0.05),
-            of("twice the damping of rattlers", free_grain_damping=0.2), of("rattlers undamped", **UNDAMPED),
+            of("walls push the grains", carry_grains=False), of("rattlers undamped", **UNDAMPED),
+            of("half the damping of rattlers", free_grain_damping=0.05),
+            of("twice the damping of rattlers", free_grain_damping=0.2),
             of("rattlers undamped, rate / 10", 2.5e5, **TENTH, **UNDAMPED)]
 HELD_STEPS = 100_000
 
@@ -96,7 +97,8 @@ def report(store, planned, folder):
             continue
         h = History(store.folder(run))
         if run.kind == "cyclic" and h.onset is not None:
-            tests.setdefault((run.domain, run.setting), {})[run.seed] = h.reversals[h.onset] / 2, h.step[h.onset] - h.step[0]
+            found = tests.setdefault((run.domain, run.setting), {})
+            found[run.seed] = h.reversals[h.onset] / 2, h.step[h.onset] - h.step[0]
         elif run.kind != "cyclic":
             held.append((run.kind, run.domain, run.seed, resting(h)))
     if tests:

@@ -5,7 +5,7 @@ import io
 import signal
 
 from isostat.campaign import study
-from support import BIN, ROOT, TIME_LIMIT, AppTest, tiny_scene, wait_until
+from support import ROOT, TIME_LIMIT, AppTest, tiny_scene, wait_until
 
 TINY = '''"""A tiny study."""
 import dataclasses
