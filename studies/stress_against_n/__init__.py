@@ -15,7 +15,7 @@ import numpy as np
 from studies.drawing import panels, save
 from studies.history import History
 from studies.scenes import scene_of
-from studies.tables import write_csv, write_tables
+from studies.tables import write_tables
 
 DEFAULTS = {"seeds": 10, "grains": [500, 1000, 2000], "rate": 0.8}
 QUICK = {"seeds": 3, "grains": [200, 400, 800], "rate": 2}
@@ -178,13 +178,11 @@ def draw_mean(axis, s, colour, label, shift=1.0):
 
 
 def report(store, planned, folder):
-    by_grains, rows = collections.defaultdict(list), []
+    by_grains = collections.defaultdict(list)
     for run in filter(store.is_done, planned):
         by_grains[run.grains].append(figures_of(History(store.folder(run))))
-        rows.append({"grains": run.grains, "seed": run.seed, **by_grains[run.grains][-1]})
-    if not rows:
+    if not by_grains:
         return
     samples = [Sample(quantity, by_grains) for quantity in QUANTITIES]
-    write_csv(folder / "runs.csv", rows, digits=9)
     write_tables(folder, {"means": means(samples, by_grains), "fits": fits(samples), "costs": costs(by_grains)})
     draw(samples, folder / "fig_stress_against_n.png")
