@@ -202,7 +202,8 @@ def reduction_table(results):
             cells.append("" if not runs else text(reduction, 3) + "; " + (damping if min(reduction) > LOST else "lost"))
         if any(cells):
             rows.append([f"{amplitude:.0e}", *cells])
-    return ["γ", *(f"{'linear' if law == 'linear-rolling' else 'Hertz'}, {pressure} kPa" for law, pressure in columns)], rows
+    heads = [f"{'linear' if law == 'linear-rolling' else 'Hertz'}, {pressure} kPa" for law, pressure in columns]
+    return ["γ", *heads], rows
 
 
 def curve(results, law, pressure):
