@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Slopes, boxes, plates and blocks of Iwan and Mohr-Coulomb soil: what varies their displacements and loads."""
-import dataclasses
-import pathlib
-import tempfile
-
 import numpy as np
 
 from figures import biaxial, soil_column
-from studies.columns import SCENES, Run
+from studies.columns import SCENES, Run, draw_figure
 from studies.history import parsed
 from studies.tables import write_tables
 
@@ -119,18 +115,10 @@ FIGURES = ((("slope", "as it is"), soil_column, "fig_spreading", "slope_spreadin
            (("block", "16 x 32 elements"), biaxial, "fig_band", "block"))
 
 
-def draw(folders, folder):
-    for case, module, name, target in FIGURES:
-        if case not in folders:
-            continue
-        others = [other for key, other in folders.items() if key[0] == case[0] == "block" and key != case]
-        one = dataclasses.replace(module.DRAWING, all=[module.DRAWING.figures[name]])
-        with tempfile.TemporaryDirectory(dir=folder) as aside:
-            one.draw(one.results(folders[case], others), pathlib.Path(aside))
-            (pathlib.Path(aside) / f"{name}.png").replace(folder / f"{target}.png")
-
-
 def report(store, planned, folder):
     folders = {run.case: store.folder(run) for run in planned if store.is_done(run)}
     write_tables(folder, {table.__name__: table(folders) for table in (slopes, boxes, strips, plates, blocks)})
-    draw(folders, folder)
+    for case, module, name, target in FIGURES:
+        if case in folders:
+            others = [other for key, other in folders.items() if key[0] == case[0] == "block" and key != case]
+            draw_figure(module.DRAWING, name, folders[case], folder / f"{target}.png", others)
