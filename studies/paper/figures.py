@@ -89,6 +89,7 @@ def cycles(table, _):
     panel.axhline(17, color=GREY, linewidth=0.9, linestyle="--")
     panel.axhline(11, color=GREY, linewidth=0.9, linestyle=":")
     plain_logarithm(panel.yaxis)
+    panel.locator_params(axis="x", nbins=5)
     panel.set(xlabel="Void ratio $e$", ylabel=f"Cycles to {PRIME}/$p_0^\\prime$ < 0.01")
     for marker, colour, text in (("^", RED, "$D_r$ = 0.64, not liquefied"), ("o", BLUE, "7° to 11°"),
                                  ("^", BLUE, "7° to 11°, not liquefied"), ("s", GREEN, "no walls")):
