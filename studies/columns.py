@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the studies of soil columns share: their runs, libraries of specimens, and figures of single runs.
+"""What the studies of soil columns share: their runs, and libraries of specimens.
 
 tested: tests/studies/columns_test.py
 """
 import dataclasses
 import pathlib
-import tempfile
 
 import isostat
 from isostat.campaign.library import make_library, parse
@@ -53,11 +52,3 @@ def library(path, executor, n, pressures, settings):
                             str(path), *words]), executor)
     except isostat.RunFailure as error:
         print(error, flush=True)
-
-
-def draw_figure(drawing, name, results, path, beside=()):
-    """One of the figures of a program (apps/figures) of the results in a folder, next to those of other folders."""
-    one = dataclasses.replace(drawing, all=[drawing.figures[name]])
-    with tempfile.TemporaryDirectory(dir=path.parent) as aside:
-        one.draw(one.results(results, beside), pathlib.Path(aside))
-        (pathlib.Path(aside) / f"{name}.png").replace(path)

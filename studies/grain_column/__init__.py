@@ -5,7 +5,8 @@ import numpy as np
 
 from figures import soil_column
 from isostat.results import read_table
-from studies.columns import SCENES, Run, draw_figure, library
+from studies.columns import SCENES, Run, library
+from studies.drawing import draw_figure
 from studies.history import parsed
 from studies.tables import write_tables
 

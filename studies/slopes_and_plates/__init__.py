@@ -3,7 +3,8 @@
 import numpy as np
 
 from figures import biaxial, soil_column
-from studies.columns import SCENES, Run, draw_figure
+from studies.columns import SCENES, Run
+from studies.drawing import draw_figure
 from studies.history import parsed
 from studies.tables import write_tables
 
