@@ -262,8 +262,8 @@ def table(tables):
     return rows
 
 
-HEADER = """Which statements of the paper hold, and which do not? Of slow tests, at a tenth of the default rate, unless the
-row says otherwise; n is the number of seeds. A statement that holds in 3 of 3 seeds holds in at least 29 % of
+HEADER = """Which statements of the paper hold, and which do not? Of slow tests, at a tenth of the default rate;
+n is the number of seeds. A statement that holds in 3 of 3 seeds holds in at least 29 % of
 specimens, in 5 of 5 in at least 48 % (95 %). Tests of 10,000 grains are of 25 November 2026, not run again since.
 
 """
