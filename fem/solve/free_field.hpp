@@ -5,8 +5,9 @@
 namespace isostat
 {
 /// Level ground without end next to a side of a block: a column of the side's own nodes, which is shaken like the
-/// block. The side has the traction of the column, and dashpots (Lysmer & Kuhlemeyer 1969, doi:10.1061/JMCEA3.0001144) against
-/// its motion relative to the column (Zienkiewicz, Bicanic & Shen 1989), docs/theory_column.md (39a):
+/// block. The side has the traction of the column, and dashpots (Lysmer & Kuhlemeyer 1969,
+/// doi:10.1061/JMCEA3.0001144) against its motion relative to the column (Zienkiewicz, Bicanic & Shen 1989),
+/// docs/theory_column.md (39a):
 ///
 ///     t = (sigma_c - sigma_0) n - rho V (v - v_c)        V = V_p along n, with the stiffness of pore water, else V_s
 ///
