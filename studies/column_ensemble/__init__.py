@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a column of grains that liquefies depends on: seeds, packings that vary over the depth, mesh, viscosity, drive.
+"""What a column of grains that liquefies depends on: seeds, packings that vary over the depth, mesh, viscosity, rate.
 
 The scene is apps/scenes/column/quick_ensemble.toml; a seed is a member of the ensemble.
 """
@@ -51,7 +51,6 @@ SAMPLES = {
                            (("analysis.viscosity", "0 ms"),), 3, 1, "same"),
     "slow": Sample("one packing, 0.4 of the rate", "0.4 of\nthe rate", GREY, False,
                    (("grains.inertial_number", 4e-5), ("grains.min_steps", 60)), 3, 2.8, "same"),
-    "static": Sample("one packing, static drive", "static", BLACK, False, (("grains.drive", "static"),), 3, 3, "same"),
 }
 
 
@@ -105,7 +104,7 @@ QUANTITIES = (("thickness", "liquefied thickness", "m", 1, 2), ("strained", "thi
               ("pga", "peak surface below 25 Hz", "m/s2", 1, 2), ("sa", "S_a(0.3 s)", "m/s2", 1, 2),
               ("arias", "Arias intensity", "m/s", 1, 3), ("settlement", "settlement", "mm", 1000, 1),
               ("redundancy", "mean I_R at the end", "", 1, 2),
-              ("steps", "time steps or evaluations of a packing", "", 1, 0))
+              ("steps", "time steps of a packing", "", 1, 0))
 
 
 @dataclasses.dataclass

@@ -72,7 +72,7 @@ def resting(history):
 def draw(tests, path):
     """Mean differences of cycles from the default, in boxes and cells."""
     figure, ((axes,),) = panels(1, 1, 6.4, 2.9)
-    axes.set_title("")
+    axes.set_title("", loc="left")
     for k, (domain, colour) in enumerate(zip(DOMAINS, (BLUE, ORANGE))):
         for y, setting in enumerate(SETTINGS[1:]):
             found, default = tests.get((domain, setting), {}), tests.get((domain, DYNAMIC), {})
@@ -81,12 +81,12 @@ def draw(tests, path):
                 axes.plot(less, np.full(len(less), y + 0.25 * k), ".", color=colour, alpha=0.5, markersize=4)
                 mean, half = mean_and_interval(less)
                 axes.errorbar(mean, y + 0.1 + 0.25 * k, xerr=np.nan_to_num(half), fmt="D", color=colour, capsize=2,
-                              markersize=4, label=domain if not y else None)
+                              markersize=4, label=None if y else "box" if k == 0 else "cell")
     axes.set_yticks([y + 0.17 for y in range(len(SETTINGS) - 1)], [setting.label for setting in SETTINGS[1:]])
     axes.invert_yaxis()
     axes.axvline(0, color="#777777", linewidth=0.8)
     axes.set_xlabel("Cycles to liquefaction less those of the default")
-    axes.legend(loc="lower left")
+    axes.legend(loc="upper left")
     save(figure, path)
 
 
