@@ -12,7 +12,7 @@ SceneFragment<ColumnMesh> box_keys();
 SceneFragment<ColumnLoad> strip_load_keys();
 
 /// Rules of a box.
-/// @throws InputError  keys of a box where the sides are tied; a box of other than two dimensions, above a compliant
+/// @throws InputError  keys of a box where the sides are tied; a box of one dimension, above a compliant
 ///                     base, on a slope, with a water table or consolidating; a ground that does
 ///                     not reach the height of the layers; places outside of the box or inside of elements
 /// tested: tests/apps/deposit/box_test.cpp

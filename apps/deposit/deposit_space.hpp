@@ -12,4 +12,8 @@ namespace isostat
 /// asked for one point alone is cut as if it was rigid, and coarse_drainage() warns where that is not enough.
 /// tested: tests/apps/column_water_test.py, tests/python/column_test.py, tests/apps/biaxial_test.py
 std::unique_ptr<const FiniteElementSpace> deposit_space(const ColumnScene &scene, const UserMaterials &user);
+
+/// A mesh of a scene held in another way.
+std::unique_ptr<FiniteElementSpace> discretised(const ColumnScene &scene, const MeshSpec &mesh,
+                                                const Supports &supports);
 } // namespace isostat
