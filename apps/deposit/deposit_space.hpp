@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/deposit/soil_material.hpp"
-#include "fem/space/discretisation.hpp"
+#include "fem/solve/free_field.hpp"
 
 namespace isostat
 {
@@ -16,4 +16,9 @@ std::unique_ptr<const FiniteElementSpace> deposit_space(const ColumnScene &scene
 /// A mesh of a scene held in another way.
 std::unique_ptr<FiniteElementSpace> discretised(const ColumnScene &scene, const MeshSpec &mesh,
                                                 const Supports &supports);
+
+/// Those of both sides, if the scene has them; their soil is that of the scene at the sides.   Collective.
+/// @param settings  of the block   tested: tests/apps/box_test.py, tests/apps/grain_box_test.py
+std::vector<std::shared_ptr<FreeField>> free_fields(const ColumnScene &scene, const DynamicsSettings &settings,
+                                                    int threads, const UserMaterials &user);
 } // namespace isostat

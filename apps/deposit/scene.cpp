@@ -255,7 +255,7 @@ MeshSpec mesh_spec(const ColumnScene &scene)
   mesh.given = scene.mesh.given;
   if (mesh.given && scene.mesh.dimension == 3)
     mesh.width[1] = mesh.given->width(1);
-  const double part = scene.mesh.sides == Sides::walls ? 0.5 : 0; // of the widths
+  const double part = scene.mesh.sides != Sides::tied ? 0.5 : 0; // of the widths
   mesh.line = {scene.output.x.value_or(part * mesh.width[0]), scene.mesh.dimension == 3 ? part * mesh.width[1] : 0};
   if (scene.analysis.kind == AnalysisKind::plate)
     mesh.patches = {plate_patch(scene)};

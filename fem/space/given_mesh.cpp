@@ -174,32 +174,32 @@ std::optional<double> GivenMesh::meets(const Corners &side, double x, double y) 
 }
 
 /// What cells have of a vertical, from the surface down. Where it runs along an edge the first cell has it.
-std::vector<GivenMesh::Stretch> GivenMesh::on_vertical(double x, double y) const
+std::vector<GivenMesh::Length> GivenMesh::on_vertical(double x, double y) const
 {
-  constexpr double near = 1e-9; // m
+  const double near = 1e-9 * width_[0];
   x = std::clamp(x, 0.0, width_[0] * (1 - 1e-12));
   y = std::clamp(y, 0.0, width_[1]);
-  std::vector<Stretch> all, stretches;
+  std::vector<Length> all, lengths;
   for (const unsigned k : bins_[bin(0, x) + bins_across_ * bin(1, y)])
     {
-      std::optional<Stretch> here;
+      std::optional<Length> here;
       for (unsigned f = 0; f < 2 * dimension; ++f)
         if (const std::optional<double> z = meets(side(cells[k], f), x, y))
           here = {here ? std::min(here->low, *z) : *z, here ? std::max(here->high, *z) : *z, cells[k].layer};
       if (here && here->high - here->low > near)
         all.push_back(*here);
     }
-  std::ranges::stable_sort(all, std::greater(), &Stretch::high);
-  for (const Stretch &stretch : all)
-    if (stretches.empty() || stretch.low < stretches.back().low - near)
-      stretches.push_back(stretch);
-  return stretches;
+  std::ranges::stable_sort(all, std::greater(), &Length::high);
+  for (const Length &length : all)
+    if (lengths.empty() || length.low < lengths.back().low - near)
+      lengths.push_back(length);
+  return lengths;
 }
 
 double GivenMesh::ground_at(double x, double y) const
 {
-  const std::vector<Stretch> stretches = on_vertical(x, y);
-  return stretches.empty() ? 0 : stretches.front().high;
+  const std::vector<Length> lengths = on_vertical(x, y);
+  return lengths.empty() ? 0 : lengths.front().high;
 }
 
 SoilProfile GivenMesh::borehole(const SoilProfile &soil, double x, double y) const

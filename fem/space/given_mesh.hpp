@@ -51,20 +51,19 @@ struct GivenMesh
   double thickness(unsigned layer) const;        ///< mean, over the whole plan, m
   /// By size, from the middles of its parts: exact of what is linear in each.
   double mean(unsigned layer, const std::function<double(const Place &)> &value) const;
-  /// What a borehole meets: cells from the surface down as layers of one cell each, whose other properties are those
-  /// of the soil's.
+  struct Length
+  {
+    double low, high; ///< z, m
+    unsigned layer;
+  };
+  std::vector<Length> on_vertical(double x, double y = 0) const; ///< of cells, from the surface down
+  /// What a borehole meets: these cells as layers of one cell each, whose other properties are those of the soil's.
   SoilProfile borehole(const SoilProfile &soil, double x, double y = 0) const;
   double ground_at(double x, double y = 0) const; ///< z of the highest point on a vertical, m
 
   void sort(); ///< after `cells` and `places` are known, for what is on a vertical
 
 private:
-  struct Stretch
-  {
-    double low, high; ///< z, m
-    unsigned layer;
-  };
-  std::vector<Stretch> on_vertical(double x, double y) const;
   std::optional<double> meets(const Corners &side, double x, double y) const;
   unsigned bin(int axis, double at) const;
 
