@@ -33,11 +33,7 @@ void add_options(CLI::App &line, SceneOptions &o, const SceneProgram &program)
     line.add_flag("--check-mesh", o.check_mesh, program.mesh_check);
   if (program.petsc)
     line.add_option_function<std::string>(
-        "--petsc",
-        [&o](const std::string &options) {
-          o.set.push_back("analysis.petsc=" + options);
-          o.petsc = true;
-        },
+        "--petsc", [&o](const std::string &options) { o.set.push_back("--petsc analysis.petsc=" + options); },
         program.petsc);
   line.add_flag("-q,--quiet", o.quiet, "no progress on stderr");
   line.add_flag("--no-figures", o.no_figures, "make no figures and no report at the end");
@@ -57,22 +53,6 @@ void check_program(const std::string &scene, const char *name)
       if (line.starts_with(header) && std::string_view(program) != name)
         throw InputError(fmt::format("{}: is a scene of {}, not of {}: it has {}. Run it with: {} {}", scene, program,
                                      name, header, program, scene));
-}
-
-/// Messages blame --set for a value that --petsc, which is short for it, has given.
-void name_petsc(const SceneOptions &options, const std::function<void()> &task)
-{
-  try
-    {
-      task();
-    }
-  catch (const InputError &error)
-    {
-      const std::string text = error.what(), blamed = "--set analysis.petsc: ";
-      if (!options.petsc || !text.starts_with(blamed))
-        throw;
-      throw InputError("--petsc: " + text.substr(blamed.size()));
-    }
 }
 
 /// What needs no run. @return  true if that was not all
@@ -110,9 +90,8 @@ int SceneProgram::parse_and_run(int argc, char **argv) const
   options.command_line = command_text(argc, argv);
   add_options(line, options, *this);
   bool ready = false; // not after --help
-  const int code =
-      run_command(line, argc, argv, [&] { name_petsc(options, [&] { ready = print_something(*this, options); }); });
-  return ready ? guard([&] { name_petsc(options, [&] { run(options); }); }) : code;
+  const int code = run_command(line, argc, argv, [&] { ready = print_something(*this, options); });
+  return ready ? guard([&] { run(options); }) : code;
 }
 
 std::string first_difference(const std::string &one, const std::string &other)

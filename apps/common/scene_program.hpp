@@ -14,7 +14,6 @@ struct SceneOptions
 {
   std::string scene, output, command_line;
   std::vector<std::string> set; ///< with that of --petsc
-  bool petsc = false;           ///< whether that was given
   bool validate = false, print_defaults = false, print_manual = false, overwrite = false, resume = false, quiet = false,
        no_figures = false, check_mesh = false;
   int threads = 1;

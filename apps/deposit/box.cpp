@@ -23,14 +23,15 @@ constexpr Key in_mesh[] = {
    .text = "Gauss points of an element along each axis; 0: as many as the degree in a column, else one more. 2 with "
            "degree 2 (reduced integration) needs fewer packings. Else at least the degree."},
   {.path = "sides", .field = member<&ColumnMesh::sides>, .value = "tied", .choices = side_choices,
-   .text = "tied: opposite points of the sides move as one, as in ground without end; walls: a box (dimension 2) "
-           "whose smooth walls move with its rigid base; free-field: a box whose waves leave through dashpots against "
-           "the motion of level ground next to each side (dynamic, small strain, the ground level there). The soil of a "
-           "box first settles into equilibrium from K0 stresses: docs/theory_column.md, section 9."},
+   .text = "tied: opposite points of the sides move as one, as in ground without end; walls: a box (dimension 2 or 3) "
+           "whose smooth walls move with its rigid base; free-field: a box (dimension 2) whose waves leave through "
+           "dashpots against the motion of level ground next to each side (dynamic, small strain, the ground level "
+           "there). The soil of a box first settles into equilibrium from K0 stresses: docs/theory_column.md, section "
+           "9."},
   {.path = "file", .field = member<&ColumnMesh::file>, .presence = Presence::optional, .value = "slope.msh",
-   .text = "A mesh of Gmsh (text, format 2.2 or 4.1) of quadrilaterals of any shape, in dimension 2 and not of a biaxial "
-           "block, in place of width, cells_across, and thickness and cells of the layers: docs/column.md. The path is "
-           "like that of `motion.file`."},
+   .text = "A mesh of Gmsh (text, format 2.2 or 4.1) of quadrilaterals or, in dimension 3, hexahedra of any shape, not of "
+           "a biaxial block, in place of width, cells_across, and thickness and cells of the layers: docs/column.md. "
+           "The path is like that of `motion.file`."},
   {.path = "ground_x", .field = member<&ColumnMesh::ground_x>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
    .text = "x of the points of an uneven surface, rising, on boundaries between elements; straight lines connect "
@@ -59,6 +60,9 @@ void check_ground(const SceneDocument &document, const ColumnScene &scene)
   const ColumnMesh &mesh = scene.mesh;
   if (mesh.ground_x.empty() && mesh.ground_z.empty())
     return;
+  if (mesh.dimension == 3)
+    document.refuse(mesh.ground_x.empty() ? "mesh.ground_z" : "mesh.ground_x",
+                    "is the surface of a strip; in 3 dimensions give a mesh (mesh.file).");
   if (mesh.ground_z.empty())
     document.refuse("mesh.ground_x", "needs mesh.ground_z: each point of the surface has both coordinates.");
   if (mesh.ground_x.size() != mesh.ground_z.size())
@@ -99,10 +103,11 @@ void refuse_box_keys(const SceneDocument &document)
 void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
 {
   const bool walls = scene.mesh.sides == Sides::walls;
-  if (scene.mesh.dimension != 2)
-    document.refuse("mesh.sides", fmt::format("can be \"{}\" in 2 dimensions only, but mesh.dimension is {}. Give "
-                                              "dimension = 2.",
-                                              walls ? "walls" : "free-field", scene.mesh.dimension));
+  if (scene.mesh.dimension == 1 || (!walls && scene.mesh.dimension == 3))
+    document.refuse("mesh.sides",
+                    fmt::format("can be \"{}\" in {} dimensions only, but mesh.dimension is {}. Give "
+                                "dimension = 2.",
+                                walls ? "walls" : "free-field", walls ? "2 and 3" : "2", scene.mesh.dimension));
   if (walls && scene.base.compliant())
     document.refuse("base.kind", "must be \"rigid\" between walls, which move with the base. Give mesh.sides = "
                                  "\"free-field\".");

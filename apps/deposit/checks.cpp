@@ -261,7 +261,7 @@ void check_depths(const SceneDocument &document, const ColumnScene &scene, const
                   const std::vector<double> &depths)
 {
   const MeshSpec mesh = mesh_spec(scene);
-  const double height = mesh.ground_at(mesh.line[0]);
+  const double height = mesh.on_line(0)[2];
   for (std::size_t i = 0; i < depths.size(); ++i)
     if (depths[i] > height * (1 + 1e-12)) // the sum of layers is rounded
       document.refuse(key, fmt::format("must lie in the soil, in [0 m, {} m], but entry {} is {} m.",

@@ -37,7 +37,7 @@ Supports supports_of(const ColumnScene &scene)
 {
   if (scene.analysis.kind == AnalysisKind::biaxial)
     return {.fixed = {{Face::base, 2}, {Face::surface, 2}}};
-  Supports supports = shaken_supports(scene.base.compliant(), scene.mesh.sides);
+  Supports supports = shaken_supports(scene.base.compliant(), scene.mesh.sides, scene.mesh.dimension);
   if (scene.water.drained_base)
     supports.drained.push_back(Face::base);
   if (scene.analysis.kind != AnalysisKind::plate)
@@ -82,24 +82,30 @@ std::pair<MeshSpec, std::vector<unsigned>> column_at(const ColumnScene &scene, d
   for (Layer &layer : column.soil.layers)
     {
       layer.cells = layer.n_cells();
-      layer.thickness *= box.ground_at(x) / box.soil.height();
+      layer.thickness *= box.ground_at({x, 0, 0}) / box.soil.height();
       numbers.push_back(static_cast<unsigned>(numbers.size()));
     }
   return {column, numbers};
 }
 
 template <int dim>
-std::unique_ptr<FiniteElementSpace> discretised(const ColumnScene &scene, const UserMaterials &user)
+std::unique_ptr<FiniteElementSpace> made(const MeshSpec &mesh, const Supports &supports, MPI_Comm communicator)
 {
-  return std::make_unique<Discretisation<dim>>(cut_mesh(scene, user), supports_of(scene),
-                                               scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
+  return std::make_unique<Discretisation<dim>>(mesh, supports, communicator);
 }
 } // namespace
 
+std::unique_ptr<FiniteElementSpace> discretised(const ColumnScene &scene, const MeshSpec &mesh,
+                                                const Supports &supports)
+{
+  constexpr std::array of_dimension = {made<1>, made<2>, made<3>};
+  return of_dimension[scene.mesh.dimension - 1](mesh, supports,
+                                                scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
+}
+
 std::unique_ptr<const FiniteElementSpace> deposit_space(const ColumnScene &scene, const UserMaterials &user)
 {
-  constexpr std::array of_dimension = {discretised<1>, discretised<2>, discretised<3>};
-  std::unique_ptr<FiniteElementSpace> space = of_dimension[scene.mesh.dimension - 1](scene, user);
+  std::unique_ptr<FiniteElementSpace> space = discretised(scene, cut_mesh(scene, user), supports_of(scene));
   if (scene.analysis.kind != AnalysisKind::biaxial)
     return space;
   std::vector<unsigned> &fixed = space->fixed_dofs;

@@ -13,6 +13,10 @@ namespace isostat
 /// tested: tests/apps/column_water_test.py, tests/python/column_test.py, tests/apps/biaxial_test.py
 std::unique_ptr<const FiniteElementSpace> deposit_space(const ColumnScene &scene, const UserMaterials &user);
 
+/// A mesh of a scene held in another way.
+std::unique_ptr<FiniteElementSpace> discretised(const ColumnScene &scene, const MeshSpec &mesh,
+                                                const Supports &supports);
+
 /// Those of both sides, if the scene has them; their soil is that of the scene at the sides.   Collective.
 /// @param settings  of the block   tested: tests/apps/box_test.py, tests/apps/grain_box_test.py
 std::vector<std::shared_ptr<FreeField>> free_fields(const ColumnScene &scene, const DynamicsSettings &settings,

@@ -13,13 +13,11 @@ namespace isostat
 {
 namespace
 {
-double thickness(const GivenMesh &mesh, std::size_t layer) { return mesh.area(layer) / mesh.width(); }
-
 /// Elements through that thickness at the mean size.
 unsigned cells(const GivenMesh &mesh, std::size_t layer)
 {
-  const double size = std::sqrt(mesh.area(layer) / mesh.n_cells(layer));
-  return static_cast<unsigned>(std::max(1.0, std::round(thickness(mesh, layer) / size)));
+  const double size = std::pow(mesh.size(layer) / mesh.n_cells(layer), 1.0 / mesh.dimension);
+  return static_cast<unsigned>(std::max(1.0, std::round(mesh.thickness(layer) / size)));
 }
 
 /// A mesh that was drawn in other units is a thousand times as large.
@@ -58,14 +56,15 @@ std::shared_ptr<const GivenMesh> expand_mesh_file(SceneDocument &document, const
         document.refuse(fmt::format("layer.{}.name", k),
                         "is that of another layer, but mesh.file refers to names. Give each layer its own.");
     }
-  std::shared_ptr<const GivenMesh> mesh = read_gmsh(found, 2, names);
+  const toml::node *dimension = document.find("mesh.dimension");
+  std::shared_ptr<const GivenMesh> mesh = read_gmsh(found, dimension && dimension->value<int>() == 3 ? 3 : 2, names);
   check_size(document, *mesh);
   for (std::size_t k = 0; k < names.size(); ++k)
     {
       const auto has = [&](const char *key) { return document.find(fmt::format("layer.{}.{}", k, key)) != nullptr; };
       toml::table row;
       if (!has("thickness"))
-        row.insert("thickness", fmt::format("{} m", thickness(*mesh, k)));
+        row.insert("thickness", fmt::format("{} m", mesh->thickness(k)));
       if (!has("cells") && !has("cell_size"))
         row.insert("cells", static_cast<std::int64_t>(cells(*mesh, k)));
       document.repeat("layer", k, "", {row});
@@ -78,10 +77,8 @@ void check_mesh_file(const SceneDocument &document, const ColumnScene &scene)
   const GivenMesh *mesh = scene.mesh.given.get();
   if (!mesh)
     return;
-  if (scene.mesh.dimension != 2)
-    document.refuse("mesh.file", "needs mesh.dimension = 2: the mesh lies in the plane of x and z.");
-  if (mesh->ground.is_level())
-    document.refuse("mesh.file", "has no surface. Put its upper boundary into a physical group named surface.");
+  if (scene.mesh.dimension == 1)
+    document.refuse("mesh.file", "needs mesh.dimension = 2, of quadrilaterals in the plane of x and z, or 3.");
   if (scene.analysis.kind == AnalysisKind::biaxial)
     document.refuse("mesh.file", "has no place in a biaxial block. Remove it, or give another analysis.kind.");
   if (scene.water.table > 0)
@@ -92,6 +89,8 @@ void check_mesh_file(const SceneDocument &document, const ColumnScene &scene)
   for (const char *key : {"mesh.ground_x", "mesh.ground_z"})
     if (document.find(key))
       document.refuse(key, "has no effect with mesh.file, whose surface it is. Remove it.");
+  if (scene.mesh.cells_across != 1)
+    document.refuse("mesh.cells_across", "has no effect with mesh.file, whose elements there are. Remove it.");
   if (document.find("mesh.width") && std::abs(scene.mesh.width - mesh->width()) > 1e-9 * mesh->width())
     document.refuse("mesh.width",
                     fmt::format("must be that of mesh.file, {} m. Remove it.", number_text(mesh->width())));
@@ -100,10 +99,10 @@ void check_mesh_file(const SceneDocument &document, const ColumnScene &scene)
       const ColumnLayer &layer = scene.layers[k];
       if (layer.cell_size > 0)
         document.refuse(fmt::format("layer.{}.cell_size", k), "has no effect with mesh.file. Remove it.");
-      if (std::abs(layer.thickness / thickness(*mesh, k) - 1) > 1e-9 || layer.cells != cells(*mesh, k))
+      if (std::abs(layer.thickness / mesh->thickness(k) - 1) > 1e-9 || layer.cells != cells(*mesh, k))
         document.refuse(fmt::format("layer.{}.thickness", k),
                         fmt::format("and cells follow from mesh.file: {} m on average, and {}. Remove them.",
-                                    number_text(thickness(*mesh, k)), cells(*mesh, k)));
+                                    number_text(mesh->thickness(k)), cells(*mesh, k)));
     }
 }
 } // namespace isostat

@@ -67,6 +67,8 @@ void check_plate(const SceneDocument &document, const ColumnScene &scene)
 {
   if (scene.analysis.kind != AnalysisKind::plate)
     return;
+  if (scene.mesh.dimension == 3)
+    document.refuse("mesh.dimension", "must be 2 with a plate, which is a strip. Correct it.");
   if (scene.mesh.sides != Sides::walls)
     document.refuse("mesh.sides", "must be \"walls\" with a plate, which moves in a box. Give dimension = 2 and "
                                   "sides = \"walls\".");

@@ -253,7 +253,10 @@ MeshSpec mesh_spec(const ColumnScene &scene)
   mesh.points_per_direction = scene.mesh.points;
   mesh.ground = ground_line(scene.mesh);
   mesh.given = scene.mesh.given;
-  mesh.line[0] = scene.output.x.value_or(scene.mesh.sides != Sides::tied ? scene.mesh.width / 2 : 0);
+  if (mesh.given && scene.mesh.dimension == 3)
+    mesh.width[1] = mesh.given->width(1);
+  const double part = scene.mesh.sides != Sides::tied ? 0.5 : 0; // of the widths
+  mesh.line = {scene.output.x.value_or(part * mesh.width[0]), scene.mesh.dimension == 3 ? part * mesh.width[1] : 0};
   if (scene.analysis.kind == AnalysisKind::plate)
     mesh.patches = {plate_patch(scene)};
   return mesh;

@@ -37,7 +37,7 @@ struct FromFile : std::shared_ptr<T>
 
 struct ColumnMesh
 {
-  unsigned dimension = 1;    ///< 1 the column; 2 (x, z) and 3 with tied sides
+  unsigned dimension = 1;    ///< 1 the column; 2 (x, z) and 3 a strip and a block
   unsigned degree = 2;       ///< of the displacement
   double width = 1;          ///< along x, in 3D along y too, m
   unsigned cells_across = 1; ///< along the same

@@ -114,11 +114,15 @@ std::vector<Stress> below_ground(const ColumnScene &scene, const CellTables &mes
   std::vector<Stress> stresses;
   for (std::size_t q = 0; q < mesh.n_points(); ++q)
     {
-      const double x = mesh.position[q][0];
-      const double inclination = (spec.ground_at(x + step) - spec.ground_at(x - step)) / (2 * step);
+      const auto inclination = [&](double dx, double dy) {
+        const auto &[x, y, z] = mesh.position[q];
+        return (spec.ground_at({x + dx, y + dy, z}) - spec.ground_at({x - dx, y - dy, z})) / (2 * step);
+      };
+      const double along_y = scene.mesh.dimension == 3 ? inclination(0, step) : 0;
       const double vertical = spec.vertical_effective_stress(mesh.position[q]) + everywhere;
       const double k0 = spec.soil.layers[mesh.cell_layer[q / mesh.points_per_cell()]].k0;
-      stresses.push_back({-k0 * vertical, -k0 * vertical, -vertical, 0, -k0 * inclination * vertical, 0});
+      stresses.push_back({-k0 * vertical, -k0 * vertical, -vertical, 0 - k0 * along_y * vertical,
+                          -k0 * inclination(step, 0) * vertical, 0});
     }
   return stresses;
 }

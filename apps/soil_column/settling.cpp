@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/soil_column/settling.hpp"
 
+#include "apps/deposit/deposit_space.hpp"
 #include "base/error.hpp"
 #include "fem/solve/dynamics.hpp"
 #include "fem/solve/statics.hpp"
@@ -29,7 +30,7 @@ std::vector<Face> surfaces(const ColumnScene &scene)
 /// Smooth walls and a rough base, which a plate in them is a part of.
 Supports box_supports(const ColumnScene &scene)
 {
-  Supports supports = shaken_supports(false, Sides::walls);
+  Supports supports = shaken_supports(false, Sides::walls, scene.mesh.dimension);
   if (has_plate(scene, PlateSide::base))
     for (unsigned c = 0; c < 3; ++c)
       supports.fixed.push_back({patch_face(0), c});
@@ -62,7 +63,8 @@ Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &materia
                const std::function<void(const std::string &)> &after_step)
 {
   const SoilProfile soil = soil_profile(scene);
-  const Discretisation<2> space(mesh, box_supports(scene), scene.mesh.distributed ? MPI_COMM_WORLD : MPI_COMM_SELF);
+  const std::unique_ptr<const FiniteElementSpace> its_space = discretised(scene, mesh, box_supports(scene));
+  const FiniteElementSpace &space = *its_space;
   Statics statics(space, material, settings_of(scene, soil));
   try
     {

@@ -99,8 +99,8 @@ SceneDocument::SceneDocument(const SceneSchema &schema, const std::string &text,
 
 void SceneDocument::apply(const std::string &override)
 {
-  const std::size_t equals = override.find('=');
-  std::string path = override.substr(0, equals);
+  const std::size_t start = override.starts_with("--") ? override.find(' ') + 1 : 0, equals = override.find('=', start);
+  std::string path = override.substr(start, equals - start);
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   std::erase_if(path, is_blank);
   if (equals == std::string::npos || path.empty())
@@ -111,6 +111,10 @@ void SceneDocument::apply(const std::string &override)
     value.erase(0, 1);
 
   overridden_.push_back(path);
+  if (start > 0)
+    options_[path] = override.substr(0, start - 1);
+  else
+    options_.erase(path);
   make_room(path);
   toml::table *parent = parent_of(path);
   parent->insert_or_assign(split(path).back(), *parse_override(value).get("value"));
@@ -234,7 +238,7 @@ std::string SceneDocument::where(std::string_view path) const
 {
   for (const std::string &set : overridden_)
     if (lies_in(path, set))
-      return "--set " + set;
+      return options_.contains(set) ? options_.at(set) : "--set " + set;
   const toml::node *node = find(path);
   while (!node && path.find('.') != std::string_view::npos)
     {

@@ -2,6 +2,7 @@
 #pragma once
 #include "base/scene/schema.hpp"
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <toml++/toml.h>
@@ -23,6 +24,7 @@ class SceneDocument
 {
 public:
   /// @param name  of the file in messages; empty: the text is of a program, and messages name no lines
+  /// @param overrides  "motion.damping=0.2" of --set; "--petsc analysis.petsc=..." of an option that is short for it
   /// @throws InputError for text that is not TOML, or not an override
   SceneDocument(const SceneSchema &schema, const std::string &text, const std::string &name,
                 const std::vector<std::string> &overrides);
@@ -59,6 +61,7 @@ private:
   const SceneSchema &schema_;
   std::string name_;
   toml::table root_;
-  std::vector<std::string> overridden_; ///< paths given by --set
+  std::vector<std::string> overridden_;        ///< paths given by --set
+  std::map<std::string, std::string> options_; ///< of those that another option has given, which
 };
 } // namespace isostat

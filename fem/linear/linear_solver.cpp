@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 namespace isostat
 {
@@ -158,8 +159,11 @@ void LinearSolver::refuse_no_solution(const std::string &method, const std::stri
                                  parts_->prefix, relative));
 }
 
-void LinearSolver::refuse_unused() const
+/// Once, when all has been read: what PETSc reports of an iteration it is asked after the first one.
+void LinearSolver::refuse_unused()
 {
+  if (std::exchange(parts_->is_checked, true))
+    return;
   PetscInt n = 0;
   char **names = nullptr, **values = nullptr;
   petsc_check(PetscOptionsLeftGet(parts_->options, &n, &names, &values));
@@ -203,9 +207,8 @@ void LinearSolver::set_matrix(Mat matrix)
       throw RunFailure(fmt::format("the matrix of {} is singular, or has no preconditioner (PETSc: {}, {})", p.prefix,
                                    PCFailedReasons[reason], static_cast<int>(error)));
     }
-  if (!p.is_checked)
+  if (p.factor)
     refuse_unused();
-  p.is_checked = true;
 }
 
 void LinearSolver::solve(Vec in, Vec out)
@@ -215,6 +218,7 @@ void LinearSolver::solve(Vec in, Vec out)
     return petsc_check(MatSolve(p.factor, in, out));
   const OwnOptions own(p.options);
   petsc_check(KSPSolve(p.ksp, in, out));
+  refuse_unused();
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   PetscInt iterations = 0;
   PetscReal residual = 0;

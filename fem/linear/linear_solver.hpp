@@ -47,7 +47,7 @@ private:
 
   void read_options();
   void refuse_no_solution(const std::string &method, const std::string &preconditioner) const;
-  void refuse_unused() const;
+  void refuse_unused();
 
   std::unique_ptr<Parts> parts_;
   LinearEffort effort_;

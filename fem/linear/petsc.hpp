@@ -20,9 +20,11 @@ struct PetscDestroy
 {
   void operator()(Mat matrix) const { MatDestroy(&matrix); }
   void operator()(Vec vector) const { VecDestroy(&vector); }
+  void operator()(MatNullSpace space) const { MatNullSpaceDestroy(&space); }
 };
 using PetscMatrix = std::unique_ptr<std::remove_pointer_t<Mat>, PetscDestroy>;
 using PetscVector = std::unique_ptr<std::remove_pointer_t<Vec>, PetscDestroy>;
+using PetscNullSpace = std::unique_ptr<std::remove_pointer_t<MatNullSpace>, PetscDestroy>;
 
 /// Entries (row, column, value; numbers over all ranks) that add up.
 struct PetscEntries

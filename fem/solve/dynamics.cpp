@@ -12,12 +12,14 @@
 
 namespace isostat
 {
-Supports shaken_supports(bool compliant_base, Sides sides)
+Supports shaken_supports(bool compliant_base, Sides sides, unsigned dimension)
 {
   Supports supports;
   supports.tied_sides = sides == Sides::tied;
   if (sides == Sides::walls)
     supports.fixed = {{Face::x_low, 0}, {Face::x_high, 0}};
+  if (sides == Sides::walls && dimension == 3)
+    supports.fixed.insert(supports.fixed.end(), {{Face::y_low, 1}, {Face::y_high, 1}});
   if (!compliant_base)
     for (unsigned c = 0; c < 3; ++c)
       supports.fixed.push_back({Face::base, c});

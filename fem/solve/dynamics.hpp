@@ -190,5 +190,5 @@ private:
 
 /// How a block that is shaken at its base is held: the base (fixed to its given motion unless compliant, and always
 /// in an undrained column vertically below its water table), its sides, drained surface.
-Supports shaken_supports(bool compliant_base, Sides sides = Sides::tied);
+Supports shaken_supports(bool compliant_base, Sides sides = Sides::tied, unsigned dimension = 2);
 } // namespace isostat

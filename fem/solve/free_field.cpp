@@ -63,7 +63,7 @@ void FreeField::join(const FiniteElementSpace &block)
 {
   const MeshSpec &mesh = block.mesh();
   const double width = mesh.given ? mesh.given->width() : mesh.width[0], x = side_ == Face::x_low ? 0 : width,
-               near = 1e-9 * (width + mesh.ground_at(x));
+               near = 1e-9 * (width + mesh.ground_at({x, 0, 0}));
   const std::vector<Place> places = block.node_places(), of_column = space_->node_places();
   const Vector area = block.face_area(side_);
   bool fits = true;

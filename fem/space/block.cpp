@@ -25,10 +25,10 @@ void halve(double a, double b, double size, const Allowed &allowed, std::vector<
 
 double MeshSpec::vertical_effective_stress(const Place &place) const
 {
-  const double ground_here = ground_at(place[0]);
+  const double ground_here = ground_at(place);
   if (given)
     {
-      const SoilProfile hole = given->borehole(soil, place[0]);
+      const SoilProfile hole = given->borehole(soil, place[0], place[1]);
       return hole.vertical_effective_stress(hole.height() - (ground_here - place[2]));
     }
   const double scale = ground_here / soil.height(); // of the thickness of all layers

@@ -60,12 +60,17 @@ struct MeshSpec
   /// those of a layer from its top down.
   std::vector<double> cell_ends(unsigned axis, std::size_t layer = 0) const;
   /// Height of the surface above the base, m.
-  double ground_at(double x) const { return ground.is_level() ? soil.height() : ground.at(x); }
-  /// Of the soil's own weight on the vertical at a place in 2D, compression positive, Pa.
+  double ground_at(const Place &place) const
+  {
+    if (given && given->dimension == 3)
+      return given->ground_at(place[0], place[1]);
+    return ground.is_level() ? soil.height() : ground.at(place[0]);
+  }
+  /// Of the soil's own weight on the vertical at a place in 2D, or of a given mesh, compression positive, Pa.
   double vertical_effective_stress(const Place &place) const;
-  double depth(const Place &place) const { return ground_at(place[0]) - place[2]; } ///< below the surface, m
+  double depth(const Place &place) const { return ground_at(place) - place[2]; } ///< below the surface, m
   /// A place on that vertical.
-  Place on_line(double depth) const { return {line[0], line[1], ground_at(line[0]) - depth}; }
+  Place on_line(double depth) const { return {line[0], line[1], ground_at({line[0], line[1], 0}) - depth}; }
 };
 
 /// What holds the sides of a block.

@@ -91,8 +91,8 @@ PointAtDepth point_at_depth(const FiniteElementSpace &space, double depth)
 std::vector<double> node_depths(const MeshSpec &mesh)
 {
   if (mesh.given)
-    return node_depths({.soil = mesh.given->borehole(mesh.soil, mesh.line[0]), .degree = mesh.degree});
-  const double scale = mesh.ground.is_level() ? 1 : mesh.ground_at(mesh.line[0]) / mesh.soil.height();
+    return node_depths({.soil = mesh.given->borehole(mesh.soil, mesh.line[0], mesh.line[1]), .degree = mesh.degree});
+  const double scale = mesh.ground.is_level() ? 1 : mesh.on_line(0)[2] / mesh.soil.height();
   std::vector<double> depths = {0};
   double top = 0;
   for (std::size_t k = 0; k < mesh.soil.layers.size(); ++k)

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace isostat
@@ -27,39 +28,48 @@ struct GivenMesh
     Face face;
   };
 
+  using Corners = std::array<unsigned, 4>;
+
   unsigned dimension = 0;
   std::vector<Place> places; ///< of corners
   std::vector<Cell> cells;
   std::vector<Side> sides; ///< all of the boundary
   GroundLine ground;       ///< 2D: sides of the surface from left to right
 
-  double width() const; ///< along x, from x = 0, m
+  double width(int axis = 0) const; ///< along x or y, from 0, m
   unsigned n_cells(unsigned layer) const;
   bool is_boundary(double x) const; ///< whether a corner of the boundary has this x
-  // In 2D:
+  /// Corners of a side of a cell, x_low, x_high, ... in its own axes; in 2D each twice.
+  Corners side(const Cell &cell, unsigned face) const;
   struct Part
   {
-    double area; ///< m2
+    double size; ///< m2, in 3D m3
     Place middle;
   };
-  std::vector<Part> parts(unsigned layer) const; ///< triangles, two of each of its cells
-  double area(unsigned layer) const;             ///< m2
-  /// By area, from the middles of its parts: exact of what is linear in each.
+  std::vector<Part> parts(unsigned layer) const; ///< simplices; they fill each of its cells
+  double size(unsigned layer) const;             ///< m2, in 3D m3
+  double thickness(unsigned layer) const;        ///< mean, over the whole plan, m
+  /// By size, from the middles of its parts: exact of what is linear in each.
   double mean(unsigned layer, const std::function<double(const Place &)> &value) const;
   struct Length
   {
     double low, high; ///< z, m
     unsigned layer;
   };
-  std::vector<Length> on_vertical(double x) const; ///< of cells, from the surface down
+  std::vector<Length> on_vertical(double x, double y = 0) const; ///< of cells, from the surface down
   /// What a borehole meets: these cells as layers of one cell each, whose other properties are those of the soil's.
-  SoilProfile borehole(const SoilProfile &soil, double x) const;
+  SoilProfile borehole(const SoilProfile &soil, double x, double y = 0) const;
+  double ground_at(double x, double y = 0) const; ///< z of the highest point on a vertical, m
 
-  void sort(); ///< after `cells` and `places` are known, for borehole()
+  void sort(); ///< after `cells` and `places` are known, for what is on a vertical
 
 private:
-  std::vector<std::pair<double, unsigned>> from_left_; ///< smallest x of each cell, rising, with its number
-  double widest_ = 0;                                  ///< extent of a cell along x, m
+  std::optional<double> meets(const Corners &side, double x, double y) const;
+  unsigned bin(int axis, double at) const;
+
+  std::array<double, 2> width_ = {};
+  unsigned bins_across_ = 1;                ///< along x, in 3D along y too
+  std::vector<std::vector<unsigned>> bins_; ///< numbers of the cells whose plan meets each, x fastest
 };
 
 /// Reads a mesh of Gmsh: text of format 2.2 or 4.1. Cells are its quadrilaterals (2D, drawn in x and y, which become x

@@ -29,6 +29,9 @@ public:
         add_cell(element);
       else if (element.dimension > dimension)
         refuse(element, fmt::format("which a mesh of dimension {} cannot have", dimension));
+    if (mesh.cells.empty())
+      refuse(fmt::format("no {}, which a mesh of dimension {} consists of. Correct mesh.dimension, or mesh it so.",
+                         dimension == 2 ? "quadrilaterals" : "hexahedra", dimension));
     for (unsigned k = 0; k < layers.size(); ++k)
       if (mesh.n_cells(k) == 0)
         refuse(fmt::format("no cells of layer.{} (\"{}\"): none is in a physical group of this name, or of the number "
@@ -46,9 +49,11 @@ public:
                            at[0], at[2], names_of_faces()));
       }
     check_place();
+    mesh.sort();
     if (dimension == 2)
       find_ground();
-    mesh.sort();
+    else
+      check_ground();
   }
 
   GivenMesh mesh;
@@ -101,21 +106,15 @@ private:
 
   void add_cell(const Element &element)
   {
-    const bool flat = mesh.dimension == 2;
     if (element.nodes.size() != std::size_t{1} << mesh.dimension)
       refuse(element, "which elements cannot be made of");
     GivenMesh::Cell cell = {{}, layer_of(element)};
     for (std::size_t k = 0; k < element.nodes.size(); ++k)
       cell.corners[k] = corner(element, element.nodes[in_turn[k]]);
     mesh.cells.push_back(cell);
-    constexpr unsigned of_quadrilateral[4][4] = {{0, 1, 0, 1}, {1, 3, 1, 3}, {3, 2, 3, 2}, {2, 0, 2, 0}},
-                       of_hexahedron[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 4, 5},
-                                              {2, 3, 6, 7}, {0, 2, 4, 6}, {1, 3, 5, 7}};
     for (unsigned f = 0; f < 2 * mesh.dimension; ++f)
       {
-        std::array<unsigned, 4> face;
-        for (unsigned i = 0; i < 4; ++i)
-          face[i] = cell.corners[flat ? of_quadrilateral[f][i] : of_hexahedron[f][i]];
+        GivenMesh::Corners face = mesh.side(cell, f);
         std::ranges::sort(face);
         if (++faces_[face] > 2)
           refuse(fmt::format("element {} has a side that two others have: it overlaps, or is in two physical groups. "
@@ -128,7 +127,7 @@ private:
   {
     const std::string name = contents_.name(element);
     GivenMesh::Side side = {};
-    std::array<unsigned, 4> key;
+    GivenMesh::Corners key;
     for (std::size_t i = 0; i < 4; ++i)
       {
         const std::size_t k = i % element.nodes.size();
@@ -181,11 +180,31 @@ private:
       }
   }
 
+  /// Of a mesh in 3D: nothing of it is above its sides' middles.
+  void check_ground() const
+  {
+    if (std::ranges::none_of(mesh.sides, [](const auto &side) { return side.face == Face::surface; }))
+      refuse("no surface. Put its upper boundary into a physical group named surface.");
+    for (const GivenMesh::Side &side : mesh.sides)
+      if (side.face == Face::surface)
+        {
+          Place middle = {};
+          for (unsigned corner : side.corners)
+            for (std::size_t k = 0; k < 3; ++k)
+              middle[k] += mesh.places[corner][k] / 4;
+          if (std::abs(mesh.ground_at(middle[0], middle[1]) - middle[2]) > 1e-6 * mesh.width())
+            refuse(
+                fmt::format("surface: at x = {:.6g} m, y = {:.6g} m its side at z = {:.6g} m is not the highest point "
+                            "of the soil, or is vertical. It must be without overhangs and vertical parts.",
+                            middle[0], middle[1], middle[2]));
+        }
+  }
+
   const fs::path &path_;
   const GmshFile &contents_;
   const std::vector<std::string> &layers_;
-  std::map<unsigned, unsigned> corners_;         ///< by the node's tag
-  std::map<std::array<unsigned, 4>, int> faces_; ///< how many cells have a face; 0: a side of the boundary
+  std::map<unsigned, unsigned> corners_;    ///< by the node's tag
+  std::map<GivenMesh::Corners, int> faces_; ///< how many cells have a face; 0: a side of the boundary
 };
 } // namespace
 

@@ -42,7 +42,7 @@ double extent_at(const FiniteElementSpace &space, std::size_t cell, const FinePl
   double extent = 0;
   for (std::size_t i = 0; i < n; ++i)
     {
-      const double level = plane.axis == 2 ? size / mesh.ground_at(corners[i][0]) : 1; // before the ground was shaped
+      const double level = plane.axis == 2 ? size / mesh.ground_at(corners[i]) : 1; // before the ground was shaped
       touches = touches || std::abs(corners[i][plane.axis] * level - plane.at) < 1e-9 * size;
       for (unsigned d = 0; d < space.dimension; ++d) // to the next corner along each side
         extent = std::max(extent, std::abs(corners[i][plane.axis] - corners[i ^ (1u << d)][plane.axis]));

@@ -69,6 +69,29 @@ def gmsh_text(across, up, move):
                       "$EndElements", ""])
 
 
+def extruded(text, width):
+    """That mesh, one element of this width along y, in 3D."""
+    def rows(name):
+        lines = text.split(f"${name}\n")[1].split(f"$End{name}")[0].splitlines()[1:]
+        return [[float(number) for number in line.split()] for line in lines]
+
+    nodes = rows("Nodes")
+    elements = []
+    for _, kind, _, group, _, *corners in rows("Elements"):
+        low, high = ([int(corner) + side * len(nodes) for corner in corners] for side in (0, 1))
+        if kind == 3:
+            elements += [(5, 5, low + high), (3, 6, low), (3, 7, high)]
+        else:
+            elements.append((3, int(group), low + high[::-1]))
+    names = ["2 1 \"base\"", "2 2 \"surface\"", "2 3 \"x_low\"", "2 4 \"x_high\"", "3 5 \"sand\"", "2 6 \"y_low\"",
+             "2 7 \"y_high\""]
+    places = [f"{int(tag) + side * len(nodes)} {x!r} {side * width} {z!r}" for side in (0, 1) for tag, x, z, _ in nodes]
+    return "\n".join(["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "7", *names, "$EndPhysicalNames",
+                      "$Nodes", str(len(places)), *places, "$EndNodes", "$Elements", str(len(elements)),
+                      *[" ".join(str(word) for word in (number, kind, 2, group, 1, *corners))
+                        for number, (kind, group, corners) in enumerate(elements, 1)], "$EndElements", ""])
+
+
 class Box(ColumnTest):
     def setUp(self):
         super().setUp()
@@ -152,6 +175,22 @@ class Box(ColumnTest):
         self.scene = self.write("shared.toml", self.scene.read_text(encoding="utf-8").replace("profile_interval", "#")
                                 .replace("paraview_interval", "#"))
         self.check_shared_mesh((2,), MOTION, 1e-7, *DISTRIBUTED, *short)
+
+    def test_a_strip_of_a_block_is_plane(self):
+        """Hexahedra between smooth walls at both sides, too: the same equations as in 2D."""
+        mesh = gmsh_text(6, 3, lambda x, z: (12 * x, z * (3.6 - 1.2 * x)))
+        self.write("plane.msh", mesh)
+        self.write("block.msh", extruded(mesh, 2.0))
+        text = re.sub(r"(width|cells_across|ground_.|thickness|cells|safety) = .*\n", "", BOX)
+        text = text.replace('[analysis]\nduration = "2 s"\n', '[analysis]\nduration = "0.3 s"\ntime_step = "0.5 ms"\n')
+        (plane, _), (block, summary) = (
+            self.rows_of(text.replace("sides =", f'file = "{name}.msh"\nsides =').replace(
+                "dimension = 2", f"dimension = {dimension}"), name) for name, dimension in (("plane", 2), ("block", 3)))
+        for name in ("surface_ux", "surface_uz", "d0_u", "d1_tau_xz"):
+            self.assert_near(block[name], plane[name], 1e-6 * np.abs(plane[name]).max(),
+                             f"Newton's tolerance of 1e-6 where the soil settles ({name})")
+        self.assertGreater(np.abs(plane["d0_u"]).max(), 10)
+        self.assertEqual(summary["elements"], 18)
 
     def test_ranks_are_alike_bit_for_bit(self):
         self.check_ranks(*settings(analysis__duration="0.2 s"))

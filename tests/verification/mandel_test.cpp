@@ -4,6 +4,7 @@
 #include "fem/material/elastic.hpp"
 #include "fem/solve/statics.hpp"
 #include "fem/water/drainage.hpp"
+#include "tests/support/drawn_mesh.hpp"
 #include "tests/support/near.hpp"
 
 #include <cmath>
@@ -176,5 +177,38 @@ TEST(Mandel, FirstTimesAndFewStepsAreAsAccurate)
       EXPECT_BELOW_BECAUSE(u, 5e-3, "cells of a quarter of sqrt(c t), steps of a tenth of t");
       EXPECT_BELOW_BECAUSE(-lowest, 3e-5, "BDF2 rings below zero when a step is longer than the last mode");
     }
+}
+
+/// Quadrilaterals that are pushed about: pressure and settlement by second order.
+TEST(Mandel, DistortedElements)
+{
+  const auto error = [](unsigned n) {
+    MeshSpec mesh = test::soil_of(test::read_gmsh_text(
+        test::gmsh_text<2>({n, n / 2, 0},
+                           [n](std::array<double, 3> at) {
+                             at = test::PushedAbout<2>{n}(at);
+                             return std::array<double, 3>{half_width * at[0], thickness * at[1], 0};
+                           }),
+        2));
+    mesh.soil.layers[0].porosity = 0.33;
+    mesh.soil.layers[0].permeability = 1e-8;
+    Mandel slab(mesh);
+    slab.statics.step_undrained();
+    double largest = 0;
+    for (int k = 1; k <= 200; ++k)
+      {
+        slab.statics.step(0.0025 * slab.seconds);
+        for (unsigned i = 0; i < n && k >= 40; ++i)
+          {
+            const double x = half_width * i / n; // at the base, where corners stay
+            largest = std::max(largest, std::abs(slab.pressure(x) - slab.exact(x, 0.0025 * k)) / slab.at_once());
+          }
+      }
+    EXPECT_CLOSE_BECAUSE(slab.settlement(), slab.exact_settlement(0.5), 1e-3, "second order in cells and steps");
+    return largest;
+  };
+  const double coarse = error(8), fine = error(16);
+  EXPECT_BELOW_BECAUSE(fine, 3e-3, "16 elements along the half");
+  EXPECT_NEAR_BECAUSE(std::log2(coarse / fine), 2, 0.4, "linear pressure; each mesh is distorted in its own way");
 }
 } // namespace isostat

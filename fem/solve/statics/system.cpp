@@ -45,6 +45,7 @@ struct StaticsSystem::Matrices
   double known_theta = -1;
   PetscMatrix whole, with_held; ///< of all unknowns; held rows and columns removed
   PetscVector in, out;
+  PetscNullSpace motions;
   std::unique_ptr<LinearSolver> solver;
 };
 
@@ -70,7 +71,7 @@ StaticsSystem::StaticsSystem(const FiniteElementSpace &space, const BiotOperator
                                             DirectSolver{MATSOLVERMUMPS, nullptr, {{6, 0}, {8, 7}, {14, 60}}},
                                             [this](KSP ksp) { tell_structure(ksp); });
   if (tells_blocks && space.dimension > 1)
-    add_rigid_motions();
+    petsc_check(MatSetNearNullSpace(m.with_held.get(), rigid_motions()));
 }
 
 StaticsSystem::~StaticsSystem() = default;
@@ -230,7 +231,8 @@ void StaticsSystem::factorise()
     }
 }
 
-/// Displacements and pressures by name, for -statics_pc_type fieldsplit.
+/// Displacements and pressures by name, for -statics_pc_type fieldsplit; the matrix of displacements gets from their
+/// name what it has without pressures.
 void StaticsSystem::tell_structure(KSP ksp) const
 {
   const Matrices &m = *matrices_;
@@ -242,15 +244,21 @@ void StaticsSystem::tell_structure(KSP ksp) const
     {
       IS rows = nullptr;
       petsc_check(ISCreateStride(space_.communicator(), static_cast<PetscInt>(n), start, 1, &rows));
+      if (start == m.of_u.front() && space_.dimension > 1)
+        {
+          petsc_check(ISSetBlockSize(rows, 3));
+          petsc_check(PetscObjectCompose(reinterpret_cast<PetscObject>(rows), "nearnullspace",
+                                         reinterpret_cast<PetscObject>(rigid_motions())));
+        }
       petsc_check(PCFieldSplitSetIS(pc, name, rows));
       petsc_check(ISDestroy(&rows));
     }
 }
 
 /// Motions without strain, which algebraic multigrid needs on coarse levels.
-void StaticsSystem::add_rigid_motions()
+MatNullSpace StaticsSystem::rigid_motions() const
 {
-  const Matrices &m = *matrices_;
+  Matrices &m = *matrices_;
   Vec places = nullptr;
   petsc_check(VecCreateMPI(space_.communicator(), static_cast<PetscInt>(m.n_u), PETSC_DETERMINE, &places));
   const PetscVector owner(places);
@@ -263,8 +271,8 @@ void StaticsSystem::add_rigid_motions()
   petsc_check(VecRestoreArrayWrite(places, &values));
   MatNullSpace motions = nullptr;
   petsc_check(MatNullSpaceCreateRigidBody(places, &motions));
-  petsc_check(MatSetNearNullSpace(m.with_held.get(), motions));
-  petsc_check(MatNullSpaceDestroy(&motions));
+  m.motions.reset(motions);
+  return motions;
 }
 
 LinearEffort StaticsSystem::effort() const { return matrices_->solver->effort(); }

@@ -4,7 +4,8 @@
 #include "fem/solve/statics/mixed_vector.hpp"
 #include "fem/water/biot_integrals.hpp"
 
-struct _p_KSP; // PETSc's
+struct _p_KSP; // PETSc's, as the next one
+struct _p_MatNullSpace;
 
 namespace isostat
 {
@@ -48,7 +49,7 @@ private:
   void assemble(std::span<const Stiffness> tangents, double theta);
   void factorise();
   void tell_structure(_p_KSP *ksp) const;
-  void add_rigid_motions();
+  _p_MatNullSpace *rigid_motions() const;
   void load(MixedVector &x, double p_factor) const;
   void unload(MixedVector &x, double p_factor) const;
 

@@ -27,7 +27,7 @@ TEST(BoxScene, KeysComeThroughTextAndGoToTheMesh)
   const MeshSpec mesh = mesh_spec(scene);
   EXPECT_EQ(mesh.ground.at(7), 3.5);
   EXPECT_EQ(mesh.line[0], 5); // the middle
-  EXPECT_EQ(mesh.ground_at(5), 4.5);
+  EXPECT_EQ(mesh.ground_at({5, 0, 0}), 4.5);
   EXPECT_EQ(scene.load.surcharge_at(3.9), 0);
   EXPECT_FALSE(scene.load.bears_on_all());
   EXPECT_EQ(scene.load.surcharge_at(4), 1e4);
@@ -130,7 +130,9 @@ TEST(BoxScene, RefusesKeysOfABoxWhereTheSidesAreTied)
 
 TEST(BoxScene, RefusesWhatCannotBeInABox)
 {
-  expect_refused(box(), {"mesh.sides", "2 dimensions only", "is 3"}, {"mesh.dimension=3"});
+  expect_refused(box(), {"mesh.sides", "2 and 3 dimensions only", "is 1"}, {"mesh.dimension=1"});
+  expect_refused(box("", "ground_x = [\"0 m\", \"10 m\"]\nground_z = [\"5 m\", \"4 m\"]\n"),
+                 {"mesh.ground_x", "in 3 dimensions give a mesh"}, {"mesh.dimension=3"});
   expect_refused(box("[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\nshear_velocity = \"800 m/s\"\n"),
                  {"base.kind", "must be \"rigid\""});
   expect_refused(box("", ground), {"mesh.sides", "level next to each side"}, {"mesh.sides=free-field"});

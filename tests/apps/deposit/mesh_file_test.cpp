@@ -39,6 +39,7 @@ protected:
   {
     test::expect_parts(test::refusal([&] { read(more, overrides); }), parts);
   }
+  const std::filesystem::path &folder() const { return folder_; }
 
 private:
   std::filesystem::path folder_;
@@ -52,7 +53,7 @@ TEST_F(MeshOfFile, GivesLayersTheirThicknessAndStress)
   EXPECT_EQ(scene.mesh.width, 8);
   EXPECT_NEAR_BECAUSE(scene.layers[0].in_situ_depth, 2.5, 1e-12, "round-off of a centre");
   EXPECT_NEAR_BECAUSE(scene.layers[0].in_situ_pressure, 2. / 3 * 2000 * 9.81 * 2.5, 1e-7, "round-off of 3e4 Pa");
-  EXPECT_EQ(mesh_spec(scene).ground_at(3), 5);
+  EXPECT_EQ(mesh_spec(scene).ground_at({3, 0, 0}), 5);
   EXPECT_TRUE(scene.mesh.is_boundary(0.8));
   EXPECT_FALSE(scene.mesh.is_boundary(1));
   EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene) << to_toml(scene);
@@ -68,12 +69,29 @@ TEST_F(MeshOfFile, HasTheMeanStressOfALayerWhoseCentreIsNotInIt)
   EXPECT_NEAR_BECAUSE(scene.layers[0].in_situ_pressure, 2. / 3 * 2000 * 9.81 * 0.2, 1e-5, "round-off of 3e3 Pa");
 }
 
+TEST_F(MeshOfFile, InThreeDimensionsHasWidthsOfItsOwn)
+{
+  std::ofstream(folder() / "block.msh") << test::gmsh_text<3>({4, 3, 2}, [](std::array<double, 3> at) {
+    return std::array<double, 3>{8 * at[0], 6 * at[1], (5 + at[0] + at[1]) * at[2]};
+  });
+  const ColumnScene scene = read(dynamic, {"mesh.file=block.msh", "mesh.dimension=3"});
+  EXPECT_NEAR_BECAUSE(scene.layers[0].thickness, 6, 1e-12, "round-off of a volume");
+  EXPECT_NEAR_BECAUSE(scene.layers[0].in_situ_pressure, 2. / 3 * 2000 * 9.81 * (36 + 1. / 6) / 12, 1e-7,
+                      "round-off of 4e4 Pa");
+  const MeshSpec mesh = mesh_spec(scene);
+  EXPECT_EQ(mesh.line, (std::array<double, 2>{4, 3}));
+  EXPECT_NEAR_BECAUSE(mesh.on_line(1)[2], 5, 1e-9, "round-off");
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "resolved"), scene) << to_toml(scene);
+}
+
 TEST_F(MeshOfFile, RefusesWhatTheFileSays)
 {
   refused("thickness = \"4 m\"\n" + dynamic, {"layer.0.thickness = 4 m; and cells follow from mesh.file", "Remove"});
   refused("cell_size = \"1 m\"\n" + dynamic, {"layer.0.cell_size", "no effect with mesh.file"});
   refused(dynamic, {"mesh.width", "must be that of mesh.file, 8 m"}, {"mesh.width=9 m"});
+  refused(dynamic, {"mesh.cells_across", "no effect with mesh.file"}, {"mesh.cells_across=4"});
   refused(dynamic, {"mesh.file", "dimension = 2"}, {"mesh.dimension=1", "mesh.sides=tied"});
+  refused(dynamic, {"slope.msh: no hexahedra", "Correct mesh.dimension"}, {"mesh.dimension=3"});
   refused(dynamic, {"mesh.ground_x", "no effect with mesh.file"}, {"mesh.ground_x=['0 m', '8 m']"});
   refused(dynamic, {"mesh.file = other.msh; does not exist"}, {"mesh.file=other.msh"});
   refused(dynamic, {"physical group \"soil\", which is no layer of the scene", "\"silt\""}, {"layer.0.name=silt"});

@@ -153,6 +153,11 @@ TEST(StaticsRanks, IterativeSolversFindTheSame)
              "full -statics_pc_fieldsplit_schur_precondition selfp -statics_fieldsplit_u_pc_type redundant "
              "-statics_fieldsplit_p_pc_type redundant -statics_fieldsplit_u_ksp_type preonly "
              "-statics_fieldsplit_p_ksp_rtol 1e-3");
+  compare<3>(true, "-statics_ksp_type fgmres -statics_pc_type fieldsplit -statics_pc_fieldsplit_type schur "
+                   "-statics_pc_fieldsplit_schur_fact_type upper -statics_pc_fieldsplit_schur_precondition a11 "
+                   "-statics_fieldsplit_u_ksp_type cg -statics_fieldsplit_u_ksp_rtol 1e-2 "
+                   "-statics_fieldsplit_u_pc_type gamg -statics_fieldsplit_p_ksp_type preonly "
+                   "-statics_fieldsplit_p_pc_type hypre -statics_ksp_converged_reason ascii:/dev/null");
 }
 
 TEST(StaticsRanks, OptionsThatCannotBe)

@@ -91,7 +91,7 @@ TEST(GivenMesh, IsReadFromFormat41)
   EXPECT_EQ(mesh->sides.size(), 6u); // the curve between the layers is none
   EXPECT_EQ(mesh->ground, (GroundLine{{{0, 3}, {4, 2}}}));
   EXPECT_EQ(mesh->width(), 4);
-  EXPECT_NEAR_BECAUSE(mesh->area(0), 6, 1e-12, "round-off");
+  EXPECT_NEAR_BECAUSE(mesh->size(0), 6, 1e-12, "round-off");
   EXPECT_NEAR_BECAUSE(mesh->mean(1, [](const Place &place) { return place[2]; }), 0.5, 1e-12, "round-off");
   EXPECT_TRUE(mesh->is_boundary(4));
   EXPECT_FALSE(mesh->is_boundary(2));
@@ -114,6 +114,37 @@ TEST(GivenMesh, BoreholeAndStressOfTheWeightAboveAPlace)
   ASSERT_EQ(nodes.size(), expected.size());
   for (std::size_t k = 0; k < nodes.size(); ++k)
     EXPECT_NEAR_BECAUSE(nodes[k], expected[k], 1e-9, "round-off");
+}
+
+/// A block of 4 m x 2 m whose ground is a twisted surface, cells pushed about inside.
+TEST(GivenMesh, BoreholeAndStressInThreeDimensions)
+{
+  const auto ground = [](double x, double y) { return 3 + x / 4 - y / 2 + x * y / 8; };
+  const auto text = [&](const auto &push) {
+    return test::gmsh_text<3>({2, 2, 3}, [&](std::array<double, 3> at) {
+      at = push(at);
+      return std::array<double, 3>{4 * at[0], 2 * at[1], at[2] * ground(4 * at[0], 2 * at[1])};
+    });
+  };
+  MeshSpec spec = test::soil_of(test::read_gmsh_text(text(test::PushedAbout<3>{3}), 3));
+  spec.soil.layers[0].density = 1900;
+  for (const auto &[x, y] : {std::pair{0.0, 0.0}, {2.0, 1.0}, {2.0, 0.3}, {1.1, 0.7}, {4.0, 2.0}, {4.0, 1.0}})
+    {
+      const double z = ground(x, y);
+      EXPECT_NEAR_BECAUSE(spec.given->ground_at(x, y), z, 1e-9, "round-off");
+      EXPECT_NEAR_BECAUSE(spec.given->borehole(spec.soil, x, y).height(), z, 1e-6, "round-off along edges");
+      EXPECT_NEAR_BECAUSE(spec.vertical_effective_stress({x, y, 1}), 9.81 * 900 * (z - 1), 1e-2,
+                          "round-off of 3e4 Pa along edges");
+    }
+  const Discretisation<3> space(spec, {});
+  const double volume = std::accumulate(space.weight.begin(), space.weight.end(), 0.0);
+  EXPECT_NEAR_BECAUSE(volume, 8 * 3.25, 1e-12, "round-off");
+  EXPECT_NEAR_BECAUSE(test::read_gmsh_text(text(std::identity()), 3)->thickness(0), 3.25, 1e-12, "round-off");
+  const auto refused = [&](const std::string &from, const std::string &to, const std::vector<std::string> &parts) {
+    test::expect_parts(test::refusal([&] { test::read_gmsh_text(with(text(std::identity()), from, to), 3); }), parts);
+  };
+  refused("\"surface\"", "\"x_low\"", {"no surface"});
+  refused("2 5 \"base\"\n2 6 \"surface\"", "2 6 \"base\"\n2 5 \"surface\"", {"is not the highest point"});
 }
 
 TEST(GivenMesh, HasTheVolumeOfItsCellsWhateverTheirShape)
