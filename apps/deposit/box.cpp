@@ -35,7 +35,7 @@ constexpr Key in_mesh[] = {
   {.path = "ground_x", .field = member<&ColumnMesh::ground_x>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"0 m\", \"20 m\"]", .range = not_negative,
    .text = "x of the points of an uneven surface, rising, on boundaries between elements; straight lines connect "
-           "them. Only between walls; water, if any, covers all of it."},
+           "them. Only in a box (sides); water, if any, covers all of it."},
   {.path = "ground_z", .field = member<&ColumnMesh::ground_z>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"4.87 m\", \"3.13 m\"]", .range = positive,
    .text = "Heights of these points above the base, the highest being that of all layers; where the ground is lower, "
@@ -45,7 +45,7 @@ constexpr Key in_mesh[] = {
 constexpr Key in_load[] = {
   {.path = "surcharge_from", .field = member<&ColumnLoad::surcharge_from>, .unit = unit::m,
    .presence = Presence::optional, .value = "8 m", .range = not_negative,
-   .text = "x where the surcharge begins, between walls, on a boundary between elements; left out: at the left wall. "
+   .text = "x where the surcharge begins, in a box, on a boundary between elements; left out: at the left side. "
            "In a box a surcharge on a part is applied after the K0 stress; no surcharge has inertia."},
   {.path = "surcharge_to", .field = member<&ColumnLoad::surcharge_to>, .unit = unit::m, .presence = Presence::optional,
    .value = "12 m", .range = positive,
@@ -132,8 +132,13 @@ void check_level_ends(const SceneDocument &document, const ColumnScene &scene)
   if (scene.mesh.sides != Sides::free_field || points.empty())
     return;
   const double near = 1e-6 * scene.height();
-  if (std::abs(points[1][1] - points[0][1]) > near || std::abs(points.rbegin()[1][1] - points.back()[1]) > near)
-    document.refuse("mesh.sides", "can be \"free-field\" only where the ground is level next to each side. Extend it.");
+  for (const auto &[side, next] : {std::pair(points[0], points[1]), std::pair(points.back(), points.rbegin()[1])})
+    if (std::abs(next[1] - side[1]) > near)
+      document.refuse(
+          "mesh.sides",
+          fmt::format("can be \"free-field\" only where the ground is level next to each side, but it has {:g} "
+                      "m at x = {:g} m and {:g} m at x = {:g} m. Add a point of the same height.",
+                      side[1], side[0], next[1], next[0]));
 }
 
 void check_places(const SceneDocument &document, const ColumnScene &scene)

@@ -281,6 +281,7 @@ def draw_loops(column, points, axes_moving):
             coloured_path(axes, factor * column[name], column[f"{prefix}_tau_{axis}z"] / 1e3, column.time, norm)
             axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1.4)
             axes.set_ylabel(rf"$\tau_{{{axis}z}}$ (kPa)")
+            axes.xaxis.set_major_locator(MaxNLocator(4))
             if kind == "path":
                 axes.set_xlim(left=min(0.0, axes.get_xlim()[0]))
         row[0].set_title(f"depth {point_label(depth, prefix)}", loc="left", fontsize=9.5, fontweight="bold", pad=4)

@@ -65,6 +65,19 @@ bool drifts(const Motion &motion, const ColumnMotion &asked)
   return way > very_far || (way > far && std::abs(motion.velocity(end)) > share * fastest);
 }
 
+/// Of the elements of a box, in which waves run in all directions; 0: they run along z, or the mesh is of a file, whose
+/// elements are about as wide as high.
+double width_of_elements(const ColumnScene &scene)
+{
+  return scene.mesh.sides == Sides::tied || scene.mesh.given ? 0 : scene.mesh.width / scene.mesh.cells_across;
+}
+
+/// The longer side of the elements of a layer, m.
+double length_of_elements(const ColumnScene &scene, std::size_t layer)
+{
+  return std::max(scene.layers[layer].thickness / scene.layers[layer].n_cells(), width_of_elements(scene));
+}
+
 /// What makes the elements of a layer smaller.
 std::string size_of_elements(const ColumnScene &scene, std::size_t layer)
 {
@@ -144,9 +157,8 @@ std::vector<CarriedWaves> carried_waves(const ColumnScene &scene, const std::vec
   std::vector<CarriedWaves> waves;
   for (std::size_t k = 0; k < start.size(); ++k)
     {
-      const double height = scene.layers[k].thickness / scene.layers[k].n_cells(),
-                   per_velocity = scene.mesh.degree / (nodes_per_wave * height);
-      waves.push_back({height, start[k] * per_velocity, {}});
+      const double length = length_of_elements(scene, k), per_velocity = scene.mesh.degree / (nodes_per_wave * length);
+      waves.push_back({length, start[k] * per_velocity, {}});
       if (!end.empty())
         waves.back().softened = end[k] * per_velocity;
     }
@@ -178,10 +190,10 @@ std::string softened_elements(const ColumnScene &scene, const std::vector<Carrie
     return "";
   const Layer &layer = scene.layers[worst];
   return fmt::format(
-      "the soil of layer.{}{} became so soft that its elements, {:.3g} m high, carried waves up to {:.3g} "
+      "the soil of layer.{}{} became so soft that its elements, {:.3g} m long, carried waves up to {:.3g} "
       "Hz only ({} nodes to a wave), and {:.3g} Hz are of interest. See with {} what depends "
       "on it, and take more cells if it matters; strains of soil that liquefies depend on the mesh at any size.",
-      worst, quoted_name(layer), waves[worst].height, carried, nodes_per_wave, frequency,
+      worst, quoted_name(layer), waves[worst].length, carried, nodes_per_wave, frequency,
       scene.mesh.given ? "a finer mesh" : "--check-mesh");
 }
 
@@ -194,22 +206,25 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
   double fewest = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < slowest.size(); ++k)
     {
-      const Layer &layer = scene.layers[k];
-      const double nodes = slowest[k] / frequency * scene.mesh.degree * layer.n_cells() / layer.thickness;
+      const double nodes = slowest[k] / frequency * scene.mesh.degree / length_of_elements(scene, k);
       if (nodes < fewest)
         worst = k, fewest = nodes;
     }
   if (frequency == 0 || fewest >= nodes_per_wave)
     return "";
   const Layer &soft = scene.layers[worst];
+  const double length = length_of_elements(scene, worst), enough = length * fewest / nodes_per_wave;
+  const auto count = [&](const std::string &key, double of) {
+    return fmt::format("{} to {:.0f} or more", key, std::ceil(of / enough));
+  };
+  std::string remedy = fmt::format("{} to {:.2g} m or less", size_of_elements(scene, worst), enough);
+  if (!scene.mesh.given)
+    remedy = width_of_elements(scene) == length ? count("mesh.cells_across", scene.mesh.width)
+                                                : count(fmt::format("layer.{}.cells", worst), soft.thickness);
   return fmt::format(
       "the elements of layer.{}{} are too long for the shortest wave of interest: {:.1f} nodes in {:.3g} m ({:.3g} m/s "
       "at {:.3g} Hz), {} are needed. Set {}, or analysis.highest_frequency to what matters.",
-      worst, quoted_name(soft), fewest, slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave,
-      scene.mesh.given ? fmt::format("{} to {:.2g} m or less", size_of_elements(scene, worst),
-                                     soft.thickness / soft.n_cells() * fewest / nodes_per_wave)
-                       : fmt::format("layer.{}.cells to {:.0f} or more", worst,
-                                     std::ceil(soft.n_cells() * nodes_per_wave / fewest)));
+      worst, quoted_name(soft), fewest, slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave, remedy);
 }
 
 std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &space, const Material &material)
@@ -263,7 +278,9 @@ std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vec
         warnings.push_back(fmt::format(
             "layer.{}: beyond a shear strain of {:.2g} % the curve would exceed 0.9 of the shear strength, {:.4g} kPa "
             "at "
-            "p' = {:.4g} kPa, and the soil goes over to the strength there. Give the layer its shear_strength.",
+            "p' = {:.4g} kPa, and the soil goes over to the strength there. Give the layer the shear_strength that was "
+            "measured, or "
+            "take it as an estimate.",
             k, 100 * *strain, layer.sand().strength_ratio * layer.in_situ_pressure / 1e3,
             layer.in_situ_pressure / 1e3));
   for (std::size_t k = 0; k < scene.layers.size(); ++k)

@@ -19,7 +19,7 @@ std::vector<double> shear_velocities(const ColumnScene &scene, const Material &m
 /// wave of the layer's slowest cell.
 struct CarriedWaves
 {
-  double height = 0;                   ///< of an element, m
+  double length = 0;                   ///< of an element, in a box its longer side, m
   double at_start = 0;                 ///< Hz
   std::optional<double> softened = {}; ///< with the secant stiffness at the largest strain of each point, Hz
 };

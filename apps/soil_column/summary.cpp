@@ -136,12 +136,12 @@ void add_waves(const ColumnSummary &s, const ColumnScene &scene, Summary &summar
   for (std::size_t k = 0; k < s.waves.size(); ++k)
     {
       const ColumnLayer &layer = scene.layers[k];
-      const auto &[height, at_start, softened] = s.waves[k];
+      const auto &[length, at_start, softened] = s.waves[k];
       summary.row(k == 0 ? "waves carried" : " ", "{}: {} elements of {:.3g} m, up to {:.3g} Hz at the start{}",
-                  layer.name.empty() ? fmt::format("layer {}", k) : layer.name, layer.n_cells(), height, at_start,
+                  layer.name.empty() ? fmt::format("layer {}", k) : layer.name, layer.n_cells(), length, at_start,
                   softened ? fmt::format(", {:.3g} Hz where softest", *softened) : "");
       summary["layers"][k].update({{"cells", layer.n_cells()},
-                                   {"element_height", height},
+                                   {"element_length", length},
                                    {"carried_frequency", at_start},
                                    {"softened_frequency", softened ? Json(*softened) : Json()}});
     }
@@ -259,7 +259,7 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
     add_slope(*s.spreading, scene, summary);
   if (s.box_motion)
     add_box_motion(*s.box_motion, mesh_spec(scene), summary);
-  if (s.box_motion && p.gamma > 0.1 && !scene.analysis.large_strain)
+  if ((s.box_motion || scene.slope.tangent > 0) && p.gamma > 0.1 && !scene.analysis.large_strain)
     summary.row("large strains", "beyond 10 %, but taken as small: displacements have an error of their order. Give "
                                  "analysis.large_strain = true");
   if (s.grains)

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
 
 namespace isostat
@@ -98,8 +99,10 @@ void Iwan::set_initial_stress(std::span<const Stress> effective)
         throw InputError(at_point(i) + "initial mean effective stress = " + std::to_string(p) +
                          " Pa; must be above 0 (compression); give the surface a load");
       if (!(size <= parameters_.strength_ratio * p))
-        throw InputError(at_point(i) + "initial stress ratio = " + std::to_string(size / p) +
-                         "; must not be above strength_ratio; choose k0 nearer to 1");
+        throw InputError(
+            fmt::format("{}initial stress ratio = {:.4g}; must not be above strength_ratio, {:.4g}; choose k0 "
+                        "nearer to 1",
+                        at_point(i), size / p, parameters_.strength_ratio));
       double *state = &states[i * stride_];
       state[pressure] = p;
       state[floor_pressure] = std::min(p, std::max(parameters_.residual_ratio * p, parameters_.min_pressure));

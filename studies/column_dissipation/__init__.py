@@ -25,8 +25,8 @@ CASES = {  # name: keys
     "the default, 0.1 ms": {},
     "0.2 ms": {"analysis.viscosity": "0.2 ms"},
     "the default, half the step": {"analysis.time_step": "0.3775 ms"},
-    "none, half the elements": {"analysis.viscosity": "0 ms", **FINE},
-    "the default, half the elements": FINE,
+    "none, elements half as high": {"analysis.viscosity": "0 ms", **FINE},
+    "the default, elements half as high": FINE,
     "the default, rows of 10 ms": {},
 }
 PERIODS = np.array([0.023, 0.1, 0.3, 1.0])

@@ -46,18 +46,18 @@ class Mesh(ColumnTest):
             self.assertIsNone(check["frequency"])
 
         carried = whole["layers"][0]
-        self.assert_near(carried["element_height"], 4 / cells[0], 1e-12, "round-off of a quotient")
+        self.assert_near(carried["element_length"], 4 / cells[0], 1e-12, "round-off of a quotient")
         self.assertLess(carried["softened_frequency"], carried["carried_frequency"])
         stiff = whole["layers"][-1]  # elastic: V_s = 400 m/s
         for key in ("carried_frequency", "softened_frequency"):
-            self.assert_close(stiff[key], 400 * 2 / 10 / stiff["element_height"], 1e-6, "round-off of a modulus")
+            self.assert_close(stiff[key], 400 * 2 / 10 / stiff["element_length"], 1e-6, "round-off of a modulus")
 
     def test_too_few_elements_are_named_at_the_end(self):
         coarse = settings(**{f"layer__{k}__cells": 1 for k in range(4)})
         summary = self.run_site("coarse", *coarse)
         said = [w for w in summary["warnings"] if "became so soft" in w]
         self.assertEqual(len(said), 1, summary["warnings"])
-        self.assertRegex(said[0], r"layer\.1 \(medium sand\) .* 8 m high, carried waves up to \S+ Hz only .*"
+        self.assertRegex(said[0], r"layer\.1 \(medium sand\) .* 8 m long, carried waves up to \S+ Hz only .*"
                                   r"--check-mesh.*depend on the mesh at any size")
 
     def test_dynamic_runs_alone_are_checked(self):
