@@ -46,10 +46,11 @@ constexpr Key in_load[] = {
   {.path = "surcharge_from", .field = member<&ColumnLoad::surcharge_from>, .unit = unit::m,
    .presence = Presence::optional, .value = "8 m", .range = not_negative,
    .text = "x where the surcharge begins, in a box, on a boundary between elements; left out: at the left side. "
-           "In a box a surcharge on a part is applied after the K0 stress; no surcharge has inertia."},
+           "In a box a surcharge on a part is applied after the K0 stress, and reaches no side with a free field; no "
+           "surcharge has inertia."},
   {.path = "surcharge_to", .field = member<&ColumnLoad::surcharge_to>, .unit = unit::m, .presence = Presence::optional,
    .value = "12 m", .range = positive,
-   .text = "x where it ends; left out: at the right wall. Between `surcharge_from` and the width, likewise; a plate "
+   .text = "x where it ends; left out: at the right side. Between `surcharge_from` and the width, likewise; a plate "
            "has no surcharge on a part."},
 };
 // clang-format on
@@ -125,20 +126,49 @@ void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
                     "must be 0 m in a box, where water covers all soil, or none if drainage is \"dry\".");
 }
 
-/// The ground next to a free field is level, in whose column no static shear stress acts.
-void check_level_ends(const SceneDocument &document, const ColumnScene &scene)
+/// Thickness of each layer on a vertical of a mesh, m.
+std::vector<double> thicknesses(const GivenMesh &mesh, std::size_t n_layers, double x)
 {
-  const auto points = ground_line(scene.mesh).points;
-  if (scene.mesh.sides != Sides::free_field || points.empty())
+  std::vector<double> sums(n_layers, 0.0);
+  for (const auto &[low, high, layer] : mesh.on_vertical(x))
+    sums[layer] += high - low;
+  return sums;
+}
+
+/// Ground and layers next to a free field are level, in whose column no static shear stress acts; and what bears on it
+/// does so everywhere.
+void check_free_fields(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.mesh.sides != Sides::free_field)
     return;
-  const double near = 1e-6 * scene.height();
-  for (const auto &[side, next] : {std::pair(points[0], points[1]), std::pair(points.back(), points.rbegin()[1])})
-    if (std::abs(next[1] - side[1]) > near)
-      document.refuse(
-          "mesh.sides",
-          fmt::format("can be \"free-field\" only where the ground is level next to each side, but it has {:g} "
-                      "m at x = {:g} m and {:g} m at x = {:g} m. Add a point of the same height.",
-                      side[1], side[0], next[1], next[0]));
+  if (!scene.load.bears_on_all() && !(scene.load.surcharge_from && scene.load.surcharge_to))
+    document.refuse(
+        scene.load.surcharge_from ? "load.surcharge_from" : "load.surcharge_to",
+        "leaves a surcharge on one side with a free field, whose column does not settle under it. Give both "
+        "surcharge_from and surcharge_to, inside of the box, or none.");
+  const auto points = ground_line(scene.mesh).points;
+  const double near = 1e-6 * scene.height(), width = scene.mesh.width, inwards = width / 100;
+  if (!points.empty())
+    for (const auto &[side, next] : {std::pair(points[0], points[1]), std::pair(points.back(), points.rbegin()[1])})
+      if (std::abs(next[1] - side[1]) > near)
+        document.refuse(
+            "mesh.sides",
+            fmt::format("can be \"free-field\" only where the ground is level next to each side, but it has "
+                        "{:g} m at x = {:g} m and {:g} m at x = {:g} m. Add a point of the same height.",
+                        side[1], side[0], next[1], next[0]));
+  if (const GivenMesh *mesh = scene.mesh.given.get())
+    for (const double side : {0.0, width})
+      {
+        const std::vector<double> at = thicknesses(*mesh, scene.layers.size(), side),
+                                  inside = thicknesses(*mesh, at.size(), side > 0 ? side - inwards : inwards);
+        for (std::size_t k = 0; k < at.size(); ++k)
+          if (std::abs(at[k] - inside[k]) > near)
+            document.refuse(
+                "mesh.sides",
+                fmt::format("can be \"free-field\" only where layers are level next to each side, but at x = "
+                            "{:g} m layer.{} dips. Extend the mesh.",
+                            side, k));
+      }
 }
 
 void check_places(const SceneDocument &document, const ColumnScene &scene)
@@ -154,9 +184,9 @@ void check_places(const SceneDocument &document, const ColumnScene &scene)
     document.refuse(key, fmt::format("must leave part of the surface under the surcharge: from {} m to {} m of {} m.",
                                      number_text(from), number_text(to), number_text(width)));
   if (from == 0 && load.surcharge_from)
-    document.refuse("load.surcharge_from", "must be above 0 m, or be left out: then it begins at the wall.");
+    document.refuse("load.surcharge_from", "must be above 0 m, or be left out: then it begins at the side.");
   if (to == width && load.surcharge_to)
-    document.refuse("load.surcharge_to", "must be below the width, or be left out: then it ends at the wall.");
+    document.refuse("load.surcharge_to", "must be below the width, or be left out: then it ends at the side.");
   for (const auto &[name, x] : {std::pair{"load.surcharge_from", from}, std::pair{"load.surcharge_to", to}})
     if (!scene.mesh.is_boundary(x))
       document.refuse(name, fmt::format("must be on a boundary between elements, which are {} m wide. Give a multiple "
@@ -182,6 +212,6 @@ void check_box(const SceneDocument &document, const ColumnScene &scene)
   refuse_around_box(document, scene);
   check_places(document, scene);
   check_ground(document, scene);
-  check_level_ends(document, scene);
+  check_free_fields(document, scene);
 }
 } // namespace isostat

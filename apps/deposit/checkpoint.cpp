@@ -18,7 +18,7 @@ namespace
 {
 const std::string checkpoint_format = "isostat-column-checkpoint";
 // 2: unknowns in the order of their numbers, the soil as one row of bytes; 3: without viscosity; 4: without peak_tau
-constexpr std::uint64_t checkpoint_schema_version = 5;
+constexpr std::uint64_t checkpoint_schema_version = 6;
 
 /// Numbers and vectors of a checkpoint or of the solver's state in it.
 template <class Part>

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 from .column_analysis import fourier
-from .common import BLACK, BLUE, GREY, ORANGE, cut_ends, letters, plt
+from .common import BLACK, BLUE, GREY, ORANGE, cut_ends, letters, note, plt
 from .drawing import draws
 
 LARGEST_SHARE = 0.15  # of the depth, that displacements are drawn with
@@ -146,11 +146,16 @@ def surface_amplification(column):
     largest and at half that frequency."""
     if not is_box(column) or not column.moving or column.scene["mesh"]["sides"] != "free-field":
         return None
+    interval = np.diff(column.maps["time"]).max()
     figure, panels = plt.subplots(len(column.moving), 1, figsize=(7.2, 2.6 * len(column.moving)), squeeze=False,
                                   sharex=True, layout="constrained")
     for axes, axis in zip(panels[:, 0], column.moving):
         frequencies, amplitude = fourier(*column.motion(f"input_a{axis}"))
         largest = frequencies[np.argmax(np.abs(amplitude))]
+        if interval > 1 / (8 * largest):
+            note(f"fig_amplification needs profiles every {1 / (8 * largest):.2g} s (output.profile_interval)")
+            plt.close(figure)
+            return None
         x, ratios = amplification(column, axis, (largest / 2, largest))
         for f, ratio, colour in zip((largest / 2, largest), ratios, (BLACK, BLUE)):
             axes.plot(x, ratio, color=colour, label=f"{f:.3g} Hz")

@@ -135,7 +135,10 @@ TEST(BoxScene, RefusesWhatCannotBeInABox)
                  {"mesh.ground_x", "in 3 dimensions give a mesh"}, {"mesh.dimension=3"});
   expect_refused(box("[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\nshear_velocity = \"800 m/s\"\n"),
                  {"base.kind", "must be \"rigid\""});
-  expect_refused(box("", ground), {"mesh.sides", "level next to each side"}, {"mesh.sides=free-field"});
+  expect_refused(box("", ground), {"mesh.sides", "level next to each side", "Add a point of the same height"},
+                 {"mesh.sides=free-field"});
+  expect_refused(box(), {"load.surcharge_from", "on one side with a free field"},
+                 {"mesh.sides=free-field", "load.surcharge=50 kPa", "load.surcharge_from=5 m"});
   expect_refused(box(), {"analysis.large_strain", "must be false"},
                  {"mesh.sides=free-field", "analysis.large_strain=true"});
   expect_refused(with_plate(), {"mesh.sides", "\"walls\" with a plate"}, {"mesh.sides=free-field"});

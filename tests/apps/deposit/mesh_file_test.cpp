@@ -95,6 +95,10 @@ TEST_F(MeshOfFile, RefusesWhatTheFileSays)
   refused(dynamic, {"mesh.ground_x", "no effect with mesh.file"}, {"mesh.ground_x=['0 m', '8 m']"});
   refused(dynamic, {"mesh.file = other.msh; does not exist"}, {"mesh.file=other.msh"});
   refused(dynamic, {"physical group \"soil\", which is no layer of the scene", "\"silt\""}, {"layer.0.name=silt"});
+  write("dips.msh", [](std::array<double, 3> at) {
+    return std::array<double, 3>{8 * at[0], 5 * at[1] + at[0] * (1 - at[1]), 0};
+  });
+  refused(dynamic, {"mesh.sides", "layer.0 dips"}, {"mesh.file=dips.msh", "mesh.sides=free-field"});
   write("mm.msh", [](std::array<double, 3> at) { return std::array<double, 3>{8e3 * at[0], 5e3 * at[1], 0}; });
   refused(dynamic, {"mesh.file = mm.msh; is 8000 m wide and 5000 m high", "drawn in mm by 0.001"},
           {"mesh.file=mm.msh"});
