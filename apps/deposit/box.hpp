@@ -12,9 +12,9 @@ SceneFragment<ColumnMesh> box_keys();
 SceneFragment<ColumnLoad> strip_load_keys();
 
 /// Rules of a box.
-/// @throws InputError  keys of a box where the sides are tied; a box of one dimension, on a slope, with a water table or
-///                     that consolidates; walls above a compliant base; free fields in 3D, next to ground that is not
-///                     level, or with large strain; a ground that does not reach the height of the layers; places
+/// @throws InputError  keys of a box where the sides are tied; a box of one dimension, on a slope, with a water table,
+///                     or that consolidates; walls above a compliant base; free fields in 3D, next to ground that is
+///                     not level, or with large strain; a ground that does not reach the height of the layers; places
 ///                     outside of the box or inside of elements
 /// tested: tests/apps/deposit/box_test.cpp
 void check_box(const SceneDocument &document, const ColumnScene &scene);

@@ -11,9 +11,10 @@ namespace isostat
 ///     H (I + H/2)^-1 = D + W,   Q(W) = (I - W/2)^-1 (I + W/2),   R_m = Q(W/2) R,   R <- Q(W) R
 ///     ds by R_m^T D R_m,        sigma = R s R^T
 ///
-/// with D symmetric and W the spin. Strains add up to the logarithmic one to second order, a cycle of steps h leaves h^3 of them,
-/// and a rotation by any angle turns the stress exactly. The rate is Jaumann's: in simple shear beyond 100 % an elastic
-/// stress oscillates.   tested: tests/fem/material/corotational_test.cpp, tests/fem/solve/dynamics_geometry_test.cpp
+/// with D symmetric and W the spin. Strains add up to the logarithmic one to second order, a cycle of steps h leaves
+/// h^3 of them, and a rotation by any angle turns the stress exactly. The rate is Jaumann's: in simple shear beyond
+/// 100 % an elastic stress oscillates.
+/// tested: tests/fem/material/corotational_test.cpp, tests/fem/solve/dynamics_geometry_test.cpp
 class Corotational : public OuterMaterial
 {
 public:
