@@ -4,7 +4,7 @@
 #include "apps/deposit/resistance.hpp"
 #include "base/error.hpp"
 #include "dem/prepare/random.hpp"
-#include "fem/material/mid_step.hpp"
+#include "fem/material/corotational.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, const CellTab
       auto material = soil.material == LayerMaterial::umat ? placed_umat(scene, mesh, soil, points)
                                                            : layer_material(soil, points.size(), user);
       if (scene.analysis.large_strain)
-        material = std::make_unique<MidStep>(std::move(material));
+        material = std::make_unique<Corotational>(std::move(material));
       std::vector<Stress> stresses;
       for (std::size_t q : points)
         stresses.push_back(in_situ[q]);

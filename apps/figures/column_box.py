@@ -110,8 +110,8 @@ def box_surface(column):
     indices, x = mesh.surface()
     figure, panels = plt.subplots(2, 2, figsize=(7.2, 5.0), layout="constrained")
     rows = np.unique(np.linspace(0, len(maps["time"]) - 1, 6).astype(int))[1:]
-    for column_of_panels, (axis, label) in enumerate((("x", "Along x (m)"), ("z", "Upwards (m)"))):
-        moved = maps[f"displacement_{axis}"][:, indices]
+    for column_of_panels, (axis, label) in enumerate((("x", "Along x (cm)"), ("z", "Upwards (cm)"))):
+        moved = 100 * maps[f"displacement_{axis}"][:, indices]
         for share, colour in ((0.25, BLUE), (0.5, BLACK), (0.75, ORANGE)):
             k = int(np.argmin(np.abs(x - share * x[-1])))
             panels[0, column_of_panels].plot(maps["time"], moved[:, k], color=colour, label=f"x = {x[k]:.3g} m")
