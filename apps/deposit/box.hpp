@@ -12,10 +12,10 @@ SceneFragment<ColumnMesh> box_keys();
 SceneFragment<ColumnLoad> strip_load_keys();
 
 /// Rules of a box.
-/// @throws InputError  keys of a box where the sides are tied; a box of one dimension, on a slope, with a water table or
-///                     consolidating; walls above a compliant base; free fields in 3D, next to ground that is not level
-///                     there, or with large strain; a ground that does not reach the height of the layers; places
-///                     outside of the box or inside of elements
+/// @throws InputError  keys of a box where the sides are tied; a box of one dimension, on a slope, with a water table
+///                     or consolidating; walls above a compliant base; free fields in 3D, next to ground that is not
+///                     level there, or with large strain; a ground that does not reach the height of the layers;
+///                     places outside of the box or inside of elements
 /// tested: tests/apps/deposit/box_test.cpp
 void check_box(const SceneDocument &document, const ColumnScene &scene);
 } // namespace isostat
