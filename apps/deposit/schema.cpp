@@ -83,7 +83,7 @@ constexpr Key mesh_keys[] = {
   {.path = "width", .field = member<&ColumnMesh::width>, .unit = unit::m, .value = "1 m", .range = positive,
    .text = "Extent of a strip or block along x, of a block along y too; that of `file`."},
   {.path = "cells_across", .field = member<&ColumnMesh::cells_across>, .value = "1", .range = counts,
-   .reason = one_or_more, .text = "Elements over the width."},
+   .reason = one_or_more, .text = "Elements over the width; left out with `file`."},
   {.path = "distributed", .field = member<&ColumnMesh::distributed>, .value = "false",
    .text = "One mesh shared out over all MPI ranks, without profiles and files for ParaView; false: a copy on every "
            "rank, whose results are the same bits for any number of ranks. Of dimension 2 or 3, without a plate and "
