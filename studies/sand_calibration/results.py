@@ -10,7 +10,7 @@ from isostat.campaign.calibrate.plan import read_plan
 from isostat.campaign.runs import read_summary
 from isostat.figures.common import legend_below
 from isostat.results import read_table
-from studies.drawing import BLUE, GREEN, ORANGE, RED, band, panels, plain_logarithm, save
+from studies.drawing import BLUE, GREEN, GREY, ORANGE, RED, band, panels, plain_logarithm, save
 from studies.ensembles import ensemble
 from studies.sand_calibration.predictions import (LABORATORY, MOST_CYCLES, ONSET, curves, densities, fit_of, fitted,
                                                   limits)
@@ -159,21 +159,21 @@ def draw_drained(all_compared, path):
 
 
 def draw_predictions(cyclic, undrained, path):
-    """Cycles over the stress ratio, and least p' of undrained tests; bars are the range of the specimens."""
+    """Cycles over the relative density of the laboratory, at 1/4 those of the first loading, triangles where not all
+    specimens reached them; least p' of undrained tests. Bars: range, and standard deviation, of the specimens."""
     figure, ((left, right),) = panels(1, 2)
-    states = ("loose", 0, 0.4), ("medium", 0.4, 0.7), ("dense", 0.7, 1)
-    for colour, (name, low, high) in zip((BLUE, GREEN, RED), states):
-        rows = [row for row in cyclic if low <= row["D_r"] < high]
-        middle, least, most = (np.array([row[key] for row in rows]) for key in ("cycles, median", "least", "most"))
-        left.errorbar([row["q/p0"] for row in rows], middle, [middle - least, most - middle], color=colour, fmt="o",
-                      markersize=4, capsize=2, linewidth=0.8, label=f"predicted, {name}", alpha=0.8)
-    left.set(xlabel="$q_{amp}/p_0'$", ylabel=f"cycles to $p'/p_0'$ < {ONSET:g}")
+    for row in cyclic:
+        middle, least, most = (max(row[name], 0.25) for name in ("cycles, median", "least", "most"))
+        left.plot([row["D_r"]] * 2, [least, most], color=GREY, linewidth=0.8, zorder=1)
+        points = left.scatter(row["D_r"], middle, c=row["q/p0"], vmin=0.15, vmax=0.5, s=18, cmap="viridis", zorder=2,
+                              marker="o" if row[f"reached in {MOST_CYCLES}"] == row["n"] else "^")
+    figure.colorbar(points, ax=left, label="$q_{amp}/p_0'$")
+    left.set(xlabel="$D_r$ of the laboratory", ylabel=f"cycles to $p'/p_0'$ < {ONSET:g}")
     plain_logarithm(left.yaxis)
-    left.legend()
     x = np.arange(len(undrained))
     right.errorbar(x, [row["least p' (kPa)"] for row in undrained], [row["s.d."] for row in undrained],
                    color=BLUE, fmt="o", markersize=4, capsize=2, linewidth=0.8, label="predicted")
-    right.set_xticks(x, [row["test"] for row in undrained], rotation=35)
+    right.set_xticks(x, [f"{row['test']}\n{row['direction'][:4].rstrip('e')}.\n{row['D_r']:.2f}" for row in undrained], fontsize=7)
     right.set_ylabel("least $p'$ (kPa)")
     save(figure, path)
 
