@@ -114,8 +114,11 @@ def predicted(store, planned, kind):
 def undrained_rows(store, planned):
     for test, (run, folders) in predicted(store, planned, "undrained").items():
         mean, deviation, _, n = ensemble([read_table(folder / "history.csv")["p"].min() / 1e3 for folder in folders])
+        measured = next(row["p' (kPa)"] for row in read_csv(LABORATORY / "undrained_anchors.csv")
+                        if (row["test"], row["state"]) == (test, "least p'"))
         yield {"contact": run.contact, "test": test, "direction": dict(run.stage)["direction"], "D_r": run.density,
-               "least p' (kPa)": mean, "s.d.": deviation, "n": n}
+               "least p' (kPa)": mean, "s.d.": deviation, "n": n, "laboratory (kPa)": measured,
+               "difference / p0'": (mean - measured) / run.pressure}
 
 
 def cycles_of(folder):
@@ -125,13 +128,14 @@ def cycles_of(folder):
 
 
 def cyclic_rows(store, planned):
+    measured = {row["test"]: row["cycles"] for row in read_csv(LABORATORY / "undrained_cyclic.csv")}
     for test, (run, folders) in predicted(store, planned, "cyclic").items():
         cycles = [cycles_of(folder) for folder in folders]
         amplitude = float(dict(run.stage)["deviator_amplitude"].split()[0])
         yield {"contact": run.contact, "test": test, "D_r": run.density, "p0 (kPa)": run.pressure,
                "q amplitude (kPa)": amplitude, "q/p0": amplitude / run.pressure,
                "cycles, median": float(np.median(cycles)), "least": min(cycles), "most": max(cycles), "n": len(cycles),
-               f"reached in {MOST_CYCLES}": sum(c < MOST_CYCLES for c in cycles)}
+               f"reached in {MOST_CYCLES}": sum(c < MOST_CYCLES for c in cycles), "laboratory": measured[test]}
 
 
 def draw_drained(all_compared, path):
@@ -167,13 +171,18 @@ def draw_predictions(cyclic, undrained, path):
         left.plot([row["D_r"]] * 2, [least, most], color=GREY, linewidth=0.8, zorder=1)
         points = left.scatter(row["D_r"], middle, c=row["q/p0"], vmin=0.15, vmax=0.5, s=18, cmap="viridis", zorder=2,
                               marker="o" if row[f"reached in {MOST_CYCLES}"] == row["n"] else "^")
+    left.plot([row["D_r"] for row in cyclic], [row["laboratory"] for row in cyclic], "k*", markersize=8,
+              label="laboratory")
+    left.legend(loc="lower right")
     figure.colorbar(points, ax=left, label="$q_{amp}/p_0'$")
     left.set(xlabel="$D_r$ of the laboratory", ylabel=f"cycles to $p'/p_0'$ < {ONSET:g}")
     plain_logarithm(left.yaxis)
     x = np.arange(len(undrained))
     right.errorbar(x, [row["least p' (kPa)"] for row in undrained], [row["s.d."] for row in undrained],
                    color=BLUE, fmt="o", markersize=4, capsize=2, linewidth=0.8, label="predicted")
-    right.set_xticks(x, [f"{row['test']}\n{row['direction'][:4].rstrip('e')}.\n{row['D_r']:.2f}" for row in undrained], fontsize=7)
+    right.plot(x, [row["laboratory (kPa)"] for row in undrained], "k*", markersize=8)
+    right.set_xticks(x, [f"{row['test']}\n{row['direction'][:4].rstrip('e')}.\n{row['D_r']:.2f}" for row in undrained],
+                     fontsize=7)
     right.set_ylabel("least $p'$ (kPa)")
     save(figure, path)
 
