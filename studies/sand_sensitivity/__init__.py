@@ -11,7 +11,7 @@ from studies.ensembles import STUDENT, ensemble
 from studies.sand_sensitivity import measure
 from studies.tables import write_csv
 
-DEFAULTS, QUICK = {"seeds": 4}, {"seeds": 1}
+DEFAULTS, QUICK = {"seeds": 3}, {"seeds": 1}
 FACTOR = 1.4  # each parameter over and times this
 SHARED = {"friction": 0.466, "rolling.stiffness": 0.3, "rolling.limit": 0.1, "twisting.stiffness": 0.3,
           "preparation": 0.268}  # frictions as tangents: 25 and 15 deg
@@ -60,8 +60,9 @@ class Run:
 
 
 def runs(options):
-    """A seed after the other, so that a campaign cut short has all of some."""
-    return [run for law in LAWS for seed in range(1, options.seeds + 1)
+    """A seed after the other, so that a campaign cut short has all of some. Hertz-Mindlin, which costs three times as
+    much, has one fewer."""
+    return [run for law in LAWS for seed in range(1, max(1, options.seeds - (law == "hertz-mindlin")) + 1)
             for run in (Run(law, seed), *(Run(law, seed, name, side) for name in LAWS[law] for side in (-1, 1)))]
 
 

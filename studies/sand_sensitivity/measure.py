@@ -5,7 +5,7 @@ import numpy as np
 
 from studies.scenes import scene_of
 
-GRAINS = 500
+GRAINS = 1000
 PRESSURES = (50, 200)  # kPa; the tests begin at the last
 DRAINED_STRAIN, LAST = 0.2, 0.17  # the critical state is the mean from LAST on
 WINDOW = 0.02  # of axial strain, over which peak and dilatancy are taken

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables and figures of the fits and of what they predict."""
+import copy
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from isostat.campaign.calibrate.curves import compare, read_laboratory, read_model
+from isostat.campaign.calibrate.plan import read_plan
+from isostat.campaign.runs import read_summary
+from isostat.figures.common import legend_below
+from isostat.results import read_table
+from studies.drawing import BLUE, GREEN, GREY, ORANGE, RED, band, panels, plain_logarithm, save
+from studies.ensembles import ensemble
+from studies.sand_calibration.predictions import (LABORATORY, MOST_CYCLES, ONSET, curves, densities, fit_of, fitted,
+                                                  limits)
+from studies.small_strain.published import small_strain_modulus
+from studies.tables import read_csv, write_csv
+
+COLOURS = {"linear_rolling": BLUE, "hertz_rolling": ORANGE, "linear": GREEN, "hertz": RED}
+
+
+def trial_rows(fit):
+    return read_csv(fit.folder / "trials.csv")
+
+
+def good_trials(fit):
+    """Those that these specimens cannot distinguish from the best: M^2 <= M_best^2 + (scatter of fitted curves)^2."""
+    scatter = np.mean([curve["scatter"]**2 for curve in fit.numbers["curves"] if not curve["blind"]])
+    return [row for row in trial_rows(fit) if row["misfit (-)"]**2 <= fit.fitted**2 + scatter]
+
+
+def fit_row(fit, contact):
+    """Best set, range of the good trials, misfits."""
+    row = {"contact": contact, "trials": fit.numbers["trials"], "fitted": fit.fitted, "not fitted": fit.blind}
+    good = good_trials(fit)
+    row |= {"good trials": len(good)}
+    for one in fit.numbers["parameters"]:
+        values = [trial[one["label"]] for trial in good]
+        row |= {one["label"]: float(one["best"].split()[0]), f"{one['label']}, low": min(values),
+                f"{one['label']}, high": max(values)}
+    return row
+
+
+def folders_of_fit(fit, curve):
+    best = next(row for row in trial_rows(fit) if row["trial (-)"] == fit.numbers["best"])
+    return sorted(path for path in (fit.folder / best["folder"]).glob(f"{curve['name']}_seed*") if path.is_dir())
+
+
+def comparison(fit, test, folders):
+    """As the fit compares, for any drained test."""
+    plan = read_plan(fit.folder.parent / "plans" / f"{fit.folder.name}.toml")
+    curve = copy.copy(plan.curve[0])
+    curve.path, curve.where = str(LABORATORY / f"drained/{test}.csv"), test
+    return compare(read_laboratory(curve, 1e3 * densities()[test][1]),
+                   [read_model(folder, curve) for folder in folders], curve, plan.misfit)
+
+
+def peak(curve, pressure):
+    """Largest mobilised friction angle, deg: sin(phi) = q/(q + 2 sigma_3).   pressure: sigma_3, Pa"""
+    q = curve.q.max()
+    return float(np.degrees(np.arcsin(q / (q + 2 * pressure))))
+
+
+def drained_of(store, planned, fit, contact):
+    """{test: comparison}"""
+    folders = {test: folders_of_fit(fit, curve) for test, curve in curves().items()}
+    for run in planned:
+        if (run.kind, run.contact) == ("drained", contact) and store.is_done(run):
+            folders.setdefault(run.test, []).append(store.folder(run))
+    order = sorted(filter(folders.get, folders), key=densities().get)
+    return {test: comparison(fit, test, folders[test]) for test in order}
+
+
+def is_fitted(test):
+    return test in fitted().values()
+
+
+def drained_rows(contact, compared):
+    for test, found in compared.items():
+        density, pressure = densities()[test]
+        laboratory, model = (peak(curve, 1e3 * pressure) for curve in (found.laboratory, found.mean))
+        yield {"contact": contact, "test": test, "D_r": density, "p0 (kPa)": round(pressure, -2),
+               "fitted": is_fitted(test), "misfit": found.misfit,
+               "scatter": found.scatter, "peak friction (deg)": model, "laboratory (deg)": laboratory,
+               "difference (deg)": model - laboratory}
+
+
+def small_strain_rows(store, planned):
+    """G of packings next to sand of the void ratio of the laboratory's test."""
+    least, most = limits()
+    cases = {}
+    for run in planned:
+        if run.kind == "small strain" and store.is_done(run):
+            cases.setdefault((run.contact, run.density), []).append(store.run(run).result)
+    for (contact, density), found in cases.items():
+        mean, deviation, _, n = ensemble([one["G"] for one in found])
+        void_ratio = most - density * (most - least)
+        sand = float(small_strain_modulus(void_ratio, 100e3)) / 1e6
+        yield {"contact": contact, "D_r": density, "e of packings": ensemble([one["void_ratio"] for one in found])[0],
+               "G (MPa)": mean, "s.d.": deviation, "n": n, "e of sand": void_ratio, "G of sand (MPa)": sand,
+               "ratio": mean / sand}
+
+
+def predicted(store, planned, kind):
+    """{test: (first of its runs, folders of all)}"""
+    cases = {}
+    for run in planned:
+        if run.kind == kind and store.is_done(run):
+            cases.setdefault(run.test, (run, []))[1].append(store.folder(run))
+    return cases
+
+
+def undrained_rows(store, planned):
+    for test, (run, folders) in predicted(store, planned, "undrained").items():
+        mean, deviation, _, n = ensemble([read_table(folder / "history.csv")["p"].min() / 1e3 for folder in folders])
+        measured = next(row["p' (kPa)"] for row in read_csv(LABORATORY / "undrained_anchors.csv")
+                        if (row["test"], row["state"]) == (test, "least p'"))
+        yield {"contact": run.contact, "test": test, "direction": dict(run.stage)["direction"], "D_r": run.density,
+               "least p' (kPa)": mean, "s.d.": deviation, "n": n, "laboratory (kPa)": measured,
+               "difference / p0'": (mean - measured) / run.pressure}
+
+
+def cycles_of(folder):
+    """To p'/p0' < ONSET; MOST_CYCLES if it is not reached."""
+    onset = read_summary(folder)["liquefaction"]
+    return onset["cycle"] if onset else MOST_CYCLES
+
+
+def cyclic_rows(store, planned):
+    measured = {row["test"]: row["cycles"] for row in read_csv(LABORATORY / "undrained_cyclic.csv")}
+    for test, (run, folders) in predicted(store, planned, "cyclic").items():
+        cycles = [cycles_of(folder) for folder in folders]
+        amplitude = float(dict(run.stage)["deviator_amplitude"].split()[0])
+        yield {"contact": run.contact, "test": test, "D_r": run.density, "p0 (kPa)": run.pressure,
+               "q amplitude (kPa)": amplitude, "q/p0": amplitude / run.pressure,
+               "cycles, median": float(np.median(cycles)), "least": min(cycles), "most": max(cycles), "n": len(cycles),
+               f"reached in {MOST_CYCLES}": sum(c < MOST_CYCLES for c in cycles), "laboratory": measured[test]}
+
+
+def draw_drained(all_compared, path):
+    tests = max(map(list, all_compared.values()), key=len)
+    columns = -(-len(tests) // 2)
+    figure, axes = plt.subplots(4, columns, figsize=(1.85 * columns, 7.6), layout="constrained", sharex=True)
+    for k, test in enumerate(tests):
+        upper, lower = (axes[2 * (k // columns) + row][k % columns] for row in (0, 1))
+        upper.set_title(f"{test}, {densities()[test][1]:.0f} kPa, $D_r$ = {densities()[test][0]:.2f}"
+                        f"\n{'fitted' if is_fitted(test) else 'not fitted'}", fontsize=7)
+        of_test = {contact: compared[test] for contact, compared in all_compared.items() if test in compared}
+        laboratory = next(iter(of_test.values())).laboratory
+        upper.plot(100 * laboratory.strain, laboratory.q / 1e3, "k.", markersize=2.5, label="laboratory")
+        lower.plot(100 * laboratory.strain, 100 * laboratory.other, "k.", markersize=2.5)
+        for contact, found in of_test.items():
+            for axis, row, scale in ((upper, 1, 1e-3), (lower, 2, 100)):
+                band(axis, 100 * laboratory.strain, scale * found.mean[row], scale * found.deviation[row],
+                     COLOURS[contact], contact.replace("_", ", "))
+        axes[3][k % columns].set_xlabel("axial strain (%)")
+        if k % columns == 0:
+            upper.set_ylabel("$q$ (kPa)")
+            lower.set_ylabel(r"$\varepsilon_v$ (%)")
+    legend_below(figure, axes[0][0], 0.05, 5)
+    save(figure, path)
+
+
+def draw_predictions(cyclic, undrained, path):
+    """Cycles over the relative density of the laboratory, at 1/4 those of the first loading, triangles where not all
+    specimens reached them; least p' of undrained tests. Bars: range, and standard deviation, of the specimens."""
+    figure, ((left, right),) = panels(1, 2)
+    for row in cyclic:
+        middle, least, most = (max(row[name], 0.25) for name in ("cycles, median", "least", "most"))
+        left.plot([row["D_r"]] * 2, [least, most], color=GREY, linewidth=0.8, zorder=1)
+        points = left.scatter(row["D_r"], middle, c=row["q/p0"], vmin=0.15, vmax=0.5, s=18, cmap="viridis", zorder=2,
+                              marker="o" if row[f"reached in {MOST_CYCLES}"] == row["n"] else "^")
+    left.plot([row["D_r"] for row in cyclic], [row["laboratory"] for row in cyclic], "k*", markersize=8,
+              label="laboratory")
+    left.legend(loc="lower right")
+    figure.colorbar(points, ax=left, label="$q_{amp}/p_0'$")
+    left.set(xlabel="$D_r$ of the laboratory", ylabel=f"cycles to $p'/p_0'$ < {ONSET:g}")
+    plain_logarithm(left.yaxis)
+    x = np.arange(len(undrained))
+    right.errorbar(x, [row["least p' (kPa)"] for row in undrained], [row["s.d."] for row in undrained],
+                   color=BLUE, fmt="o", markersize=4, capsize=2, linewidth=0.8, label="predicted")
+    right.plot(x, [row["laboratory (kPa)"] for row in undrained], "k*", markersize=8)
+    right.set_xticks(x, [f"{row['test']}\n{row['direction'][:4].rstrip('e')}.\n{row['D_r']:.2f}" for row in undrained],
+                     fontsize=7)
+    right.set_ylabel("least $p'$ (kPa)")
+    save(figure, path)
+
+
+def report(store, planned, folder, contacts):
+    fits = {contact: fit for contact in contacts if (fit := fit_of(planned[0].output / contact))}
+    if not fits:
+        return
+    compared = {contact: drained_of(store, planned, fit, contact) for contact, fit in fits.items()}
+    write_csv(folder / "fits.csv", [fit_row(fit, contact) for contact, fit in fits.items()])
+    tables = {"drained": [row for contact in fits for row in drained_rows(contact, compared[contact])],
+              "small_strain": list(small_strain_rows(store, planned)),
+              "undrained": list(undrained_rows(store, planned)), "cyclic": list(cyclic_rows(store, planned))}
+    for name, rows in tables.items():
+        if rows:
+            write_csv(folder / f"{name}.csv", rows, 4)
+    draw_drained(compared, folder / "drained.png")
+    if tables["cyclic"] and tables["undrained"]:
+        draw_predictions(tables["cyclic"], tables["undrained"], folder / "predictions.png")
