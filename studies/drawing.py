@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the figures of the campaign share: tables as columns, one style, panels, bands."""
+import dataclasses
+import pathlib
+import tempfile
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter
@@ -87,3 +91,11 @@ def of_tables(*names):
         function.tables = names
         return function
     return mark
+
+
+def draw_figure(drawing, name, results, path, beside=()):
+    """One of the figures of a program (apps/figures) of the results in a folder, next to those of other folders."""
+    one = dataclasses.replace(drawing, all=[drawing.figures[name]])
+    with tempfile.TemporaryDirectory(dir=path.parent) as aside:
+        one.draw(one.results(results, beside), pathlib.Path(aside))
+        (pathlib.Path(aside) / f"{name}.png").replace(path)

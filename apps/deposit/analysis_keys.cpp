@@ -47,8 +47,7 @@ constexpr Key analysis_key[] = {
   {.path = "large_strain", .field = member<&ColumnAnalysis::large_strain>, .value = "false", .kinds = of_waves,
    .text = "Cells move with the soil: stresses are those of the deformed soil (updated Lagrangian), and water flows "
            "through it as it is. Left out, strains are small: at settlements or rotations of 10 % they are wrong by "
-           "about as much. Packings turn their stress with the soil; elastic, iwan, mohr_coulomb and umat do not, of which a "
-           "box warns. docs/theory_column.md, section 2."},
+           "about as much. Stresses turn with the soil. Not in an undrained column, which keeps its length. docs/theory_column.md, section 2."},
   {.path = "petsc", .field = member<&ColumnAnalysis::petsc>, .presence = Presence::optional,
    .value = "-statics_ksp_type cg -statics_pc_type gamg",
    .text = "Options of PETSc for the linear systems; left out: direct solution, the same bits for any number of ranks. "

@@ -14,7 +14,7 @@ namespace
 {
 using namespace ranges;
 
-constexpr const char *side_choices[] = {"tied", "walls"};
+constexpr const char *side_choices[] = {"tied", "walls", "free-field"};
 
 // clang-format off
 constexpr Key in_mesh[] = {
@@ -24,8 +24,9 @@ constexpr Key in_mesh[] = {
            "degree 2 (reduced integration) needs fewer packings. Else at least the degree."},
   {.path = "sides", .field = member<&ColumnMesh::sides>, .value = "tied", .choices = side_choices,
    .text = "tied: opposite points of the sides move as one, as in ground without end; walls: a box (dimension 2) "
-           "whose smooth walls move with its rigid base. Its soil first settles into equilibrium from K0 stresses: "
-           "docs/theory_column.md, section 9."},
+           "whose smooth walls move with its rigid base; free-field: a box whose waves leave through dashpots against "
+           "the motion of level ground next to each side (dynamic, small strain, the ground level there). The soil of a "
+           "box first settles into equilibrium from K0 stresses: docs/theory_column.md, section 9."},
   {.path = "file", .field = member<&ColumnMesh::file>, .presence = Presence::optional, .value = "slope.msh",
    .text = "A mesh of Gmsh (text, format 2.2 or 4.1) of quadrilaterals of any shape, in dimension 2 and not of a biaxial "
            "block, in place of width, cells_across, and thickness and cells of the layers: docs/column.md. The path is "
@@ -90,19 +91,24 @@ void refuse_box_keys(const SceneDocument &document)
 {
   for (const char *key : {"mesh.ground_x", "mesh.ground_z", "load.surcharge_from", "load.surcharge_to", "output.x"})
     if (document.find(key))
-      document.refuse(key, "belongs to a box; where the sides are tied, all x are alike. Give mesh.sides = \"walls\", "
-                           "or remove it.");
+      document.refuse(key, "belongs to a box; where the sides are tied, all x are alike. Give mesh.sides = \"walls\" "
+                           "or \"free-field\", or remove it.");
 }
 
 /// What cannot be in a box.
 void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
 {
+  const bool walls = scene.mesh.sides == Sides::walls;
   if (scene.mesh.dimension != 2)
-    document.refuse("mesh.sides", fmt::format("can be \"walls\" in 2 dimensions only, but mesh.dimension is {}. Give "
+    document.refuse("mesh.sides", fmt::format("can be \"{}\" in 2 dimensions only, but mesh.dimension is {}. Give "
                                               "dimension = 2.",
-                                              scene.mesh.dimension));
-  if (scene.base.compliant())
-    document.refuse("base.kind", "must be \"rigid\" in a box, whose walls move with its base.");
+                                              walls ? "walls" : "free-field", scene.mesh.dimension));
+  if (walls && scene.base.compliant())
+    document.refuse("base.kind", "must be \"rigid\" between walls, which move with the base. Give mesh.sides = "
+                                 "\"free-field\".");
+  if (!walls && scene.analysis.large_strain)
+    document.refuse("analysis.large_strain", "must be false if mesh.sides is \"free-field\", whose tractions are those "
+                                             "of small strain.");
   if (scene.analysis.kind == AnalysisKind::consolidation)
     document.refuse("analysis.kind", "must not be \"consolidation\" in a box; shake it, or move a plate.");
   if (scene.slope.tangent > 0)
@@ -112,6 +118,17 @@ void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
   if (scene.water.table > 0)
     document.refuse("water.table",
                     "must be 0 m in a box, where water covers all soil, or none if drainage is \"dry\".");
+}
+
+/// The ground next to a free field is level, in whose column no static shear stress acts.
+void check_level_ends(const SceneDocument &document, const ColumnScene &scene)
+{
+  const auto points = ground_line(scene.mesh).points;
+  if (scene.mesh.sides != Sides::free_field || points.empty())
+    return;
+  const double near = 1e-6 * scene.height();
+  if (std::abs(points[1][1] - points[0][1]) > near || std::abs(points.rbegin()[1][1] - points.back()[1]) > near)
+    document.refuse("mesh.sides", "can be \"free-field\" only where the ground is level next to each side. Extend it.");
 }
 
 void check_places(const SceneDocument &document, const ColumnScene &scene)
@@ -155,5 +172,6 @@ void check_box(const SceneDocument &document, const ColumnScene &scene)
   refuse_around_box(document, scene);
   check_places(document, scene);
   check_ground(document, scene);
+  check_level_ends(document, scene);
 }
 } // namespace isostat

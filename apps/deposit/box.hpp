@@ -5,16 +5,17 @@
 
 namespace isostat
 {
-/// Keys of [mesh]: points, and those that make a box of soil between walls, with a surface that need not be level:
-/// sides, ground_x, ground_z.
+/// Keys of [mesh]: points, and those that make a box of soil between walls or free fields, with a surface that need not
+/// be level: sides, ground_x, ground_z.
 SceneFragment<ColumnMesh> box_keys();
 /// Keys of [load]: the part of the surface that has the surcharge.
 SceneFragment<ColumnLoad> strip_load_keys();
 
 /// Rules of a box.
-/// @throws InputError  keys of a box where the sides are tied; a box of other than two dimensions, above a compliant
-///                     base, on a slope, with a water table or consolidating; a ground that does
-///                     not reach the height of the layers; places outside of the box or inside of elements
+/// @throws InputError  keys of a box where the sides are tied; a box of other than two dimensions, on a slope,
+///                     with a water table or consolidating; walls above a compliant base; free fields next to ground
+///                     that is not level there, or with large strain; a ground that does not reach the height of the
+///                     layers; places outside of the box or inside of elements
 /// tested: tests/apps/deposit/box_test.cpp
 void check_box(const SceneDocument &document, const ColumnScene &scene);
 } // namespace isostat

@@ -45,6 +45,9 @@ void get(const hdf5::Group &root, const std::string &prefix, Part &part)
   hdf5::read_field(root, prefix + "numbers", part.numbers);
 }
 
+/// What names of a part of the solver's state begin with.
+std::string part(std::size_t k) { return fmt::format("part_{}_", k); }
+
 template <class Fields>
 const auto &field(const ColumnCheckpoint &checkpoint, const Fields &fields, const std::string &name)
 {
@@ -68,6 +71,13 @@ ColumnCheckpoint read_file(const std::filesystem::path &path)
   checkpoint.state.step = root.attribute<std::uint64_t>("step");
   checkpoint.state.material = MaterialState::from_bytes(hdf5::read_bytes(root, "material"));
   get(root, "state_", checkpoint.state);
+  for (std::uint64_t k = 0; root.has_attribute("parts") && k < root.attribute<std::uint64_t>("parts"); ++k)
+    {
+      SolverState &state = checkpoint.state.parts.emplace_back();
+      state.step = checkpoint.state.step;
+      state.material = MaterialState::from_bytes(hdf5::read_bytes(root, part(k) + "material"));
+      get(root, part(k), state);
+    }
   get(root, "", checkpoint);
   return checkpoint;
 }
@@ -107,6 +117,13 @@ void write_column_checkpoint(const std::filesystem::path &folder, const ColumnCh
     root.set_attribute("step", checkpoint.state.step);
     hdf5::write_bytes(root, "material", checkpoint.state.material.bytes());
     put(root, "state_", checkpoint.state);
+    if (!checkpoint.state.parts.empty())
+      root.set_attribute("parts", std::uint64_t{checkpoint.state.parts.size()});
+    for (std::size_t k = 0; k < checkpoint.state.parts.size(); ++k)
+      {
+        put(root, part(k), checkpoint.state.parts[k]);
+        hdf5::write_bytes(root, part(k) + "material", checkpoint.state.parts[k].material.bytes());
+      }
     put(root, "", checkpoint);
   });
 }

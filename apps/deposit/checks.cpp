@@ -33,6 +33,10 @@ void check_mesh(const SceneDocument &document, const ColumnScene &scene)
                     "must be 1 if water.drainage is \"undrained\", because only in a column does the "
                     "pore pressure follow from vertical equilibrium. Give drainage = \"coupled\", if need "
                     "be with a permeability of 0 m/s.");
+  if (scene.analysis.large_strain && scene.water.drainage == Drainage::undrained)
+    document.refuse("analysis.large_strain",
+                    "has no effect if water.drainage is \"undrained\": such a column keeps its length. Remove it, or "
+                    "give drainage = \"coupled\" or \"dry\".");
   if (scene.water.drained_base && scene.water.drainage != Drainage::coupled)
     document.refuse("water.base",
                     "has no effect unless water.drainage is \"coupled\": only then water moves. Remove it.");
@@ -237,7 +241,7 @@ void check_petsc(const SceneDocument &document, const ColumnScene &scene)
 {
   const bool shaken = scene.analysis.kind == AnalysisKind::dynamic;
   std::vector<std::string_view> prefixes;
-  if (!shaken || scene.mesh.sides == Sides::walls)
+  if (!shaken || scene.mesh.sides != Sides::tied)
     prefixes.push_back("-statics_");
   if (shaken && scene.water.drainage == Drainage::coupled)
     prefixes.push_back("-water_");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/deposit/deposit_space.hpp"
 
-#include "fem/solve/dynamics.hpp"
 #include "fem/water/drainage.hpp"
 
 #include <algorithm>
@@ -67,6 +66,28 @@ MeshSpec cut_mesh(const ColumnScene &scene, const UserMaterials &user)
   return mesh;
 }
 
+/// The ground of a box at x, and the numbers that its layers have in the scene.
+std::pair<MeshSpec, std::vector<unsigned>> column_at(const ColumnScene &scene, double x)
+{
+  const MeshSpec box = mesh_spec(scene);
+  MeshSpec column{.soil = box.soil, .degree = box.degree, .points_per_direction = box.gauss_points(2)};
+  std::vector<unsigned> numbers;
+  if (box.given)
+    {
+      column.soil = box.given->borehole(box.soil, x);
+      for (const auto &[low, high, layer] : box.given->on_vertical(x))
+        numbers.push_back(layer);
+      return {column, numbers};
+    }
+  for (Layer &layer : column.soil.layers)
+    {
+      layer.cells = layer.n_cells();
+      layer.thickness *= box.ground_at(x) / box.soil.height();
+      numbers.push_back(static_cast<unsigned>(numbers.size()));
+    }
+  return {column, numbers};
+}
+
 template <int dim>
 std::unique_ptr<FiniteElementSpace> discretised(const ColumnScene &scene, const UserMaterials &user)
 {
@@ -88,5 +109,29 @@ std::unique_ptr<const FiniteElementSpace> deposit_space(const ColumnScene &scene
   std::ranges::sort(fixed);
   fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
   return space;
+}
+
+std::vector<std::shared_ptr<FreeField>> free_fields(const ColumnScene &scene, const DynamicsSettings &settings,
+                                                    int threads, const UserMaterials &user)
+{
+  std::vector<std::shared_ptr<FreeField>> fields;
+  if (scene.mesh.sides != Sides::free_field)
+    return fields;
+  ColumnScene alone = scene; // a column is a whole on every rank
+  alone.mesh.distributed = false;
+  for (const Face side : {Face::x_low, Face::x_high})
+    {
+      const double x = side == Face::x_low ? 0 : scene.mesh.width;
+      auto [mesh, layers] = column_at(scene, x);
+      auto space = std::make_unique<Discretisation<1>>(mesh, supports_of(alone));
+      CellTables tables = *space; // with the places and layers of the scene
+      for (Place &place : tables.position)
+        place[0] = x;
+      for (unsigned &layer : tables.cell_layer)
+        layer = layers[layer];
+      auto material = soil_material(alone, tables, threads, user).material;
+      fields.push_back(std::make_shared<FreeField>(side, std::move(space), std::move(material), settings));
+    }
+  return fields;
 }
 } // namespace isostat

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "apps/deposit/soil_material.hpp"
-#include "fem/space/discretisation.hpp"
+#include "fem/solve/free_field.hpp"
 
 namespace isostat
 {
@@ -12,4 +12,9 @@ namespace isostat
 /// asked for one point alone is cut as if it was rigid, and coarse_drainage() warns where that is not enough.
 /// tested: tests/apps/column_water_test.py, tests/python/column_test.py, tests/apps/biaxial_test.py
 std::unique_ptr<const FiniteElementSpace> deposit_space(const ColumnScene &scene, const UserMaterials &user);
+
+/// Those of both sides, if the scene has them; their soil is that of the scene at the sides.   Collective.
+/// @param settings  of the block   tested: tests/apps/box_test.py, tests/apps/grain_box_test.py
+std::vector<std::shared_ptr<FreeField>> free_fields(const ColumnScene &scene, const DynamicsSettings &settings,
+                                                    int threads, const UserMaterials &user);
 } // namespace isostat

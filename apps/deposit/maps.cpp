@@ -33,7 +33,7 @@ SeriesLayout layout_of(const FiniteElementSpace &space, std::span<const double> 
   for_each_corner(space, [&](std::size_t corner, unsigned) { corners.push_back(space.corner[corner]); });
   SeriesLayout layout = profile_layout(depths(space), {vertical_stress.begin(), vertical_stress.end()},
                                        {velocities.begin(), velocities.end()});
-  for (const char *name : {"displacement_x", "displacement_z"})
+  for (const char *name : {"displacement_x", "displacement_y", "displacement_z"})
     layout.series.push_back({name, "m", corners.size()});
   layout.series.push_back({"sigma_x", "Pa", space.n_points()});
   if (packings)
@@ -58,7 +58,7 @@ BoxMaps::BoxMaps(const std::filesystem::path &path, const FiniteElementSpace &sp
 void BoxMaps::append(const ColumnInstant &instant, std::span<const double> redundancy)
 {
   std::vector<double> values = columns_at(instant, points_, vertical_stress_);
-  for (unsigned axis : {0, 2})
+  for (unsigned axis : {0, 1, 2})
     for_each_corner(space_, [&](std::size_t, unsigned dof) { values.push_back(instant.displacement[dof + axis]); });
   for (const Stress &stress : instant.stresses)
     values.push_back(-stress[0]);

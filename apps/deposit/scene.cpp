@@ -253,7 +253,7 @@ MeshSpec mesh_spec(const ColumnScene &scene)
   mesh.points_per_direction = scene.mesh.points;
   mesh.ground = ground_line(scene.mesh);
   mesh.given = scene.mesh.given;
-  mesh.line[0] = scene.output.x.value_or(scene.mesh.sides == Sides::walls ? scene.mesh.width / 2 : 0);
+  mesh.line[0] = scene.output.x.value_or(scene.mesh.sides != Sides::tied ? scene.mesh.width / 2 : 0);
   if (scene.analysis.kind == AnalysisKind::plate)
     mesh.patches = {plate_patch(scene)};
   return mesh;

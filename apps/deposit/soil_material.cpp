@@ -4,7 +4,7 @@
 #include "apps/deposit/resistance.hpp"
 #include "base/error.hpp"
 #include "dem/prepare/random.hpp"
-#include "fem/material/mid_step.hpp"
+#include "fem/material/corotational.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ std::unique_ptr<Material> stressed_layer(const ColumnScene &scene, const CellTab
       auto material = soil.material == LayerMaterial::umat ? placed_umat(scene, mesh, soil, points)
                                                            : layer_material(soil, points.size(), user);
       if (scene.analysis.large_strain)
-        material = std::make_unique<MidStep>(std::move(material));
+        material = std::make_unique<Corotational>(std::move(material));
       std::vector<Stress> stresses;
       for (std::size_t q : points)
         stresses.push_back(in_situ[q]);
@@ -213,7 +213,7 @@ std::vector<Stress> in_situ_stress(const ColumnScene &scene, const CellTables &m
       const double p = -scene.biaxial.confinement;
       return std::vector<Stress>(mesh.n_points(), Stress{p, p, p, 0, 0, 0});
     }
-  if (scene.mesh.sides == Sides::walls || scene.mesh.given)
+  if (scene.mesh.sides != Sides::tied || scene.mesh.given)
     return below_ground(scene, mesh);
   const SoilProfile soil = soil_profile(scene);
   std::vector<Stress> stresses(mesh.n_points());

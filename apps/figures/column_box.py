@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a box of soil: maps over the mesh as it has moved, and the motion of its surface."""
+"""Figures of a box of soil: maps over the mesh as it has moved, and the motion of its surface.
+
+tested: tests/apps/box_test.py, tests/studies/canyon_test.py
+"""
 from collections import Counter
 
 import numpy as np
 from matplotlib.collections import PolyCollection
 
+from .column_analysis import fourier
 from .common import BLACK, BLUE, GREY, ORANGE, cut_ends, letters, plt
 from .drawing import draws
 
@@ -106,8 +110,8 @@ def box_surface(column):
     indices, x = mesh.surface()
     figure, panels = plt.subplots(2, 2, figsize=(7.2, 5.0), layout="constrained")
     rows = np.unique(np.linspace(0, len(maps["time"]) - 1, 6).astype(int))[1:]
-    for column_of_panels, (axis, label) in enumerate((("x", "Along x (m)"), ("z", "Upwards (m)"))):
-        moved = maps[f"displacement_{axis}"][:, indices]
+    for column_of_panels, (axis, label) in enumerate((("x", "Along x (cm)"), ("z", "Upwards (cm)"))):
+        moved = 100 * maps[f"displacement_{axis}"][:, indices]
         for share, colour in ((0.25, BLUE), (0.5, BLACK), (0.75, ORANGE)):
             k = int(np.argmin(np.abs(x - share * x[-1])))
             panels[0, column_of_panels].plot(maps["time"], moved[:, k], color=colour, label=f"x = {x[k]:.3g} m")
@@ -120,4 +124,37 @@ def box_surface(column):
     panels[0, 0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, fontsize=7, handlelength=1.2)
     panels[1, 1].legend(fontsize=7)
     letters(panels)
+    return figure
+
+
+def amplification(column, axis, f):
+    """x of the corners of the surface, m, and Fourier amplitudes of their acceleration over the input's (f x corners)
+    at frequencies f, Hz: second differences of the maps' displacement, corrected to those of a sine."""
+    indices, x = Mesh(column.maps).surface()
+    time, w = column.maps["time"], 2 * np.pi * np.asarray(f, dtype=float)[:, None]
+    dt = (time[-1] - time[0]) / (len(time) - 1)
+    bends = np.diff(column.maps[f"displacement_{axis}"][:, indices], 2, axis=0)
+    moved = np.exp(-1j * w * time[1:-1]) @ bends * dt * (w / (2 * np.sin(w * dt / 2))) ** 2
+    a, step = column.motion(f"input_a{axis}")
+    put_in = step * np.exp(-1j * w * step * np.arange(len(a))) @ a[:, None]
+    return x, np.abs(moved + (0 if column.base else put_in)) / np.abs(put_in)
+
+
+@draws("fig_amplification")
+def surface_amplification(column):
+    """Fourier amplitude of the surface over that of the input, along a box with free fields, where the input's is
+    largest and at half that frequency."""
+    if not is_box(column) or not column.moving or column.scene["mesh"]["sides"] != "free-field":
+        return None
+    figure, panels = plt.subplots(len(column.moving), 1, figsize=(7.2, 2.6 * len(column.moving)), squeeze=False,
+                                  sharex=True, layout="constrained")
+    for axes, axis in zip(panels[:, 0], column.moving):
+        frequencies, amplitude = fourier(*column.motion(f"input_a{axis}"))
+        largest = frequencies[np.argmax(np.abs(amplitude))]
+        x, ratios = amplification(column, axis, (largest / 2, largest))
+        for f, ratio, colour in zip((largest / 2, largest), ratios, (BLACK, BLUE)):
+            axes.plot(x, ratio, color=colour, label=f"{f:.3g} Hz")
+        axes.set(ylim=(0, 1.2 * ratios.max()), ylabel=f"Amplification along {axis}")
+        axes.legend(loc="upper right", ncols=2)
+    panels[-1, 0].set_xlabel("x (m)")
     return figure

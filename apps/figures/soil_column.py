@@ -10,7 +10,7 @@ compression.
 """
 from .column_plate import plate
 from .column_results import Column
-from .column_box import box_maps, box_surface
+from .column_box import box_maps, box_surface, surface_amplification
 from .column_consolidation import isochrones, settlement
 from .column_expansion import expansion
 from .column_grains import grains_history, grains_map, grains_profiles
@@ -29,5 +29,5 @@ def kinds(column):
 
 
 DRAWING = Drawing(Column, [motions, spectra, transfer_functions, peaks, liquefaction, profiles, velocity, ru_map,
-                           histories, spreading, box_maps, box_surface, plate, loops, expansion, isochrones,
-                           settlement, grains_profiles, grains_map, grains_history, picture], kinds=kinds)
+                           histories, spreading, box_maps, box_surface, surface_amplification, plate, loops, expansion,
+                           isochrones, settlement, grains_profiles, grains_map, grains_history, picture], kinds=kinds)

@@ -162,7 +162,7 @@ private:
   /// A resumed run settles, too: the time step is that of the stiffness then.
   Settled settled()
   {
-    if (scene_.mesh.sides != Sides::walls)
+    if (scene_.mesh.sides == Sides::tied)
       return {};
     const Progress progress(request_.quiet);
     return settle(scene_, space_.mesh(), *soil_.material, [&](const std::string &line) {

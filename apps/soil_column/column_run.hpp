@@ -64,7 +64,7 @@ protected:
     Run::finish();
     if (scene_.slope.tangent > 0)
       spreading_ = spreading(scene_, space_, run_.displacement(), files_.line());
-    if (scene_.mesh.sides == Sides::walls)
+    if (scene_.mesh.sides != Sides::tied)
       {
         box_motion_ = box_motion(space_, run_.displacement());
         box_motion_->settled = this->settled_.largest;

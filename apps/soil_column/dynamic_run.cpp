@@ -11,8 +11,9 @@ namespace isostat
 {
 namespace
 {
-DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 3> &motions)
+DynamicsSettings settings_of(const ColumnRequest &request, const std::array<Motion, 3> &motions)
 {
+  const ColumnScene &scene = request.scene;
   DynamicsSettings settings;
   settings.time_step = scene.analysis.time_step.value_or(0);
   if (!scene.has_grains()) // of which up to half as many steps again would be expensive
@@ -29,6 +30,7 @@ DynamicsSettings settings_of(const ColumnScene &scene, const std::array<Motion, 
   settings.motion = motions;
   if (scene.load.kind != LoadKind::none)
     settings.surface_traction = [load = scene.load](double t) { return load.traction(t); };
+  settings.free_fields = free_fields(scene, settings, request.threads, request.materials);
   return settings;
 }
 
@@ -36,7 +38,7 @@ class DynamicRun : public ColumnRun<Dynamics>
 {
 public:
   DynamicRun(const ColumnRequest &request, const std::array<Motion, 3> &motions)
-      : ColumnRun<Dynamics>(request, motions, settings_of(request.scene, motions)),
+      : ColumnRun<Dynamics>(request, motions, settings_of(request, motions)),
         motion_(scene_, space_, motions_, run_.time_step())
   {
     if (resumed_)

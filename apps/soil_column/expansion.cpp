@@ -8,7 +8,7 @@ namespace isostat
 {
 CapExpansions::CapExpansions(const ColumnScene &scene, const FiniteElementSpace &space)
 {
-  if (scene.water.drainage != Drainage::coupled || scene.mesh.distributed || scene.mesh.sides == Sides::walls ||
+  if (scene.water.drainage != Drainage::coupled || scene.mesh.distributed || scene.mesh.sides != Sides::tied ||
       scene.mesh.given)
     return;
   double z = scene.height();

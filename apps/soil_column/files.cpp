@@ -78,7 +78,7 @@ void write_profile(const fs::path &path, const ColumnLine &line, const ColumnPea
 ColumnFiles::ColumnFiles(fs::path folder, const ColumnScene &scene, const FiniteElementSpace &space,
                          const std::array<Motion, 3> &motions, std::size_t stride)
     : folder_(std::move(folder)), scene_text_(to_toml(scene)), space_(space),
-      paraview_(scene.output.paraview_interval.has_value()), box_(scene.mesh.sides == Sides::walls),
+      paraview_(scene.output.paraview_interval.has_value()), box_(scene.mesh.sides != Sides::tied),
       packings_(scene.has_grains() && scene.analysis.kind == AnalysisKind::dynamic),
       moves_(scene.analysis.kind == AnalysisKind::dynamic), history_(scene, space, motions, stride)
 {

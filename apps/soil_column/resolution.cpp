@@ -252,15 +252,6 @@ std::vector<std::string> scene_warnings(const ColumnScene &scene, const std::vec
     warnings.push_back(fmt::format("output.history_interval = {:g} s is {:.6g} of the time step, {:g} s: rows are "
                                    "{:.6g} s apart. Leave analysis.time_step out, or give a step that divides it.",
                                    scene.output.history_interval, steps, step, std::round(steps) * step));
-  std::vector<std::string> still; // formulas, whose stress does not turn
-  for (std::size_t k = 0; k < scene.layers.size(); ++k)
-    if (scene.layers[k].from_formula() || scene.layers[k].material == LayerMaterial::umat)
-      still.push_back(fmt::format("layer.{}{}", k, quoted_name(scene.layers[k])));
-  if (scene.analysis.large_strain && scene.mesh.dimension > 1 && !still.empty())
-    warnings.push_back(fmt::format("analysis.large_strain moves the cells, but does not turn the stress of {}: only "
-                                   "that of packings turns with the soil. Where such soil turns by 10 % its stress is "
-                                   "wrong by about as much.",
-                                   fmt::join(still, ", ")));
   const auto vertical = [](const ColumnMotion &motion) { return motion.axis == Axis::z; };
   if (scene.water.drainage == Drainage::undrained && std::ranges::any_of(scene.motions, vertical))
     warnings.push_back(

@@ -260,8 +260,8 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
   if (s.box_motion)
     add_box_motion(*s.box_motion, mesh_spec(scene), summary);
   if (s.box_motion && p.gamma > 0.1 && !scene.analysis.large_strain)
-    summary.row("large strains", "beyond 10 %, but taken as small: displacements have an error of their order{}",
-                scene.has_grains() ? ". Give analysis.large_strain = true" : "");
+    summary.row("large strains", "beyond 10 %, but taken as small: displacements have an error of their order. Give "
+                                 "analysis.large_strain = true");
   if (s.grains)
     add_grains(*s.grains, summary);
   summary["depths"] = s.point_depths;

@@ -8,7 +8,7 @@
 namespace isostat
 {
 /// Inertial numbers where the motion names none [-]: of tests that go one way, which depend more on their rate than
-/// those that turn (docs/results/free_grains.md), of these, and of packings whose strain answers their stress.
+/// those that turn (docs/results/speed_error.md), of these, and of packings whose strain answers their stress.
 constexpr double one_way_inertial_number = 4e-5, cyclic_inertial_number = 7e-4, controlled_inertial_number = 1e-4;
 
 /// How grains move and how fast they are driven. Scene keys are checked against the list of its fields, keys of caches
@@ -46,8 +46,7 @@ SceneFragment<StaticDrive> static_drive_keys();
 /// The other keys of [motion].   tested: tests/dem/drive/motion_spec_test.cpp (every field has its key)
 SceneFragment<MotionSpec> motion_keys();
 /// The defaults of packings whose strain answers their stress, as in a column: with less local damping packing and
-/// column keep each other in motion (docs/results/free_grains.md, "Columns"), and at a higher rate they liquefy late
-/// (docs/results/column_error.md).
+/// column keep each other in motion, and at a higher rate they liquefy late (docs/results/ensemble.md).
 inline MotionSpec controlled_motion() { return {.damping = 0.2, .inertial_number = controlled_inertial_number}; }
 /// The keys of such packings: damping and rate.
 SceneFragment<MotionSpec> controlled_motion_keys();

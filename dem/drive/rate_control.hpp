@@ -7,7 +7,7 @@
 namespace isostat
 {
 /// Strain rate, 1/s: the fixed one, else that of the inertial number, I sqrt(p0'/rho)/d50. It stays the same while p'
-/// changes: what error that leaves, also in the liquefied state, is measured in docs/results/free_grains.md.
+/// changes: what error that leaves, also in the liquefied state, is measured in docs/results/speed_error.md.
 /// @param motion  as it is in force in a stage (ShearStage::motion_in_force)
 /// @param p0  mean effective stress when shearing began, Pa
 /// @throws RunFailure  the rate is that of the inertial number and p0 <= 0
@@ -47,7 +47,7 @@ double braked_before(double next, double strain_left, double rate, double ramp_t
 /// of the grains.
 double wave_time(const Assembly &assembly, double p0);
 
-/// How long loads ramp, in wave times. Shorter ramps shake the packing at each reversal (docs/results/free_grains.md).
+/// How long loads ramp, in wave times. Shorter ramps shake the packing at each reversal.
 constexpr double ramp_waves = 4;
 
 /// Loading starts from rest, at the beginning of a stage or at a reversal, with a first window of the slope.

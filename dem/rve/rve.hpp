@@ -16,7 +16,7 @@ namespace isostat
 struct RveSettings
 {
   /// Damping, rate, time step; load_per_wave is not used. An inertial number of 5e-4 where none is named: for a path on
-  /// which accuracy matters take less, as columns do (1e-4, docs/results/column_error.md).
+  /// which accuracy matters take less, as columns do (1e-4, docs/results/ensemble.md).
   MotionSpec motion = {};
   Mat3 frame = Mat3::Identity(); ///< axes of the specimen in the laboratory, a rotation: x_lab = frame x_specimen
   /// Least number of time steps of an increment. An element whose increments are small would otherwise take

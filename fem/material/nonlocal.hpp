@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "fem/material/averaging.hpp"
-#include "fem/material/material.hpp"
+#include "fem/material/outer_material.hpp"
 
 namespace isostat
 {
@@ -28,7 +28,7 @@ struct NonlocalParameters
 /// State: that of the inner material, s and A. All points of the body must be here: a mesh that is shared out over
 /// ranks has no nonlocal material.
 /// tested: tests/fem/material/nonlocal_test.cpp, tests/verification/nonlocal_column_test.cpp
-class Nonlocal : public Material
+class Nonlocal : public OuterMaterial
 {
 public:
   /// A is 0 until the initial stress is set: it follows from the wave moduli that the inner material has then.
@@ -37,17 +37,12 @@ public:
   Nonlocal(std::unique_ptr<Material> inner, const NonlocalParameters &parameters,
            std::span<const std::array<double, 3>> positions, std::span<const double> volumes);
 
-  std::string name() const override { return "nonlocal " + inner_->name(); }
-  std::size_t n_points() const override { return inner_->n_points(); }
-  void set_time_step(double seconds) override { inner_->set_time_step(seconds); }
   /// s begins with the initial stress as the inner material does: any field of it is kept, not only a uniform one.
   void set_initial_stress(std::span<const Stress> effective) override;
   /// The same where the inner material has been brought to these stresses already.
   void start_from(std::span<const Stress> effective);
   /// Cost: besides the inner material's, 15 multiplications for each pair of points nearer than 4 l.
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
-  void commit() override;
-  void rollback() override;
   /// Elastic, of the wave moduli: the true tangent joins all points nearer than 8 l and is no matter of one of them.
   /// With it Newton's method is that of an initial stiffness, whose residual falls by a steady factor; relaxation is
   /// better.
@@ -55,26 +50,21 @@ public:
   /// The larger of A's and the mean W of the inner material's. With both the same everywhere it bounds the work of any
   /// field, since W has its eigenvalues g between 0 and 1, where g^2 C + (1 - g)^2 A is at most the larger of C and A.
   void wave_moduli(std::span<WaveModuli> moduli) const override;
-  MaterialState pack() const override;
-  void unpack(const MaterialState &state) override;
 
   /// What the inner material gets of a field of gradients.
   void average(std::span<const Gradient> gradients, std::span<Gradient> means) const { mean_.apply(gradients, means); }
 
 private:
-  struct Difference ///< of a point
+  enum Row : std::size_t ///< of a point: s in Pa, and the moduli of A in Pa
   {
-    Stress stress{};            ///< s, Pa
-    double bulk = 0, shear = 0; ///< of A, Pa
+    at_bulk = 6,
+    at_shear,
+    row_size
   };
   void find_moduli();
 
-  std::unique_ptr<Material> inner_;
   NonlocalParameters parameters_;
   Averaging mean_;
-  std::vector<Difference> committed_;
-  std::vector<Stress> trial_; ///< s
-  bool has_trial_ = false;
   std::vector<Gradient> increments_; ///< of one trial: W dh
   std::vector<Stress> inner_stresses_, excess_;
 };

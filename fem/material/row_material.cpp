@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fem/material/row_material.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace isostat
 {
 RowMaterial::RowMaterial(std::string name, std::vector<double> parameters, std::size_t n_points, std::size_t row)
@@ -31,7 +34,7 @@ void RowMaterial::unpack(const MaterialState &state)
   std::vector<double> stored = parameters_;
   in.numbers(stored, "parameters");
   if (stored != parameters_)
-    in.fail("its parameters are others");
+    in.fail(fmt::format("its parameters are {}", fmt::join(stored, ", ")));
   in.expect_end();
   std::vector<double> rows(committed_.size()); // nothing changes unless all fit
   unpack_rows(state, name_, rows, n_points_);

@@ -168,7 +168,9 @@ void Umat::set_initial_stress(std::span<const Stress> effective)
 
 void Umat::find_waves(std::size_t point, double *row, const Tangent &ddsdde) const
 {
-  const WaveModuli moduli = finite(ddsdde) ? max_wave_moduli(stiffness_of(ddsdde)) : WaveModuli{};
+  // the symmetric part: no wave is faster than its fastest, whichever triangle of DDSDDE has the larger entries
+  const Stiffness c = stiffness_of(ddsdde), symmetric = (c + c.transpose()) / 2;
+  const WaveModuli moduli = finite(ddsdde) ? max_wave_moduli(symmetric) : WaveModuli{};
   if (!(moduli.p > 0))
     throw InputError(
         fmt::format("{}no wave runs with DDSDDE of a call without strain; it must be finite, with a P-wave "

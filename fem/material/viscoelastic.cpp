@@ -61,8 +61,7 @@ double ZenerBody::at_one_hertz() const
 double ZenerBody::unrelaxed() const { return std::accumulate(shares.begin(), shares.end(), 1.0); }
 
 Viscoelastic::Viscoelastic(std::unique_ptr<Material> inner, double damping)
-    : inner_(std::move(inner)), damping_(damping), relaxation_(damping), committed_(row * inner_->n_points(), 0.0),
-      trial_(committed_), moduli_(inner_->n_points())
+    : OuterMaterial("viscoelastic", std::move(inner), {damping}, row), relaxation_(damping), moduli_(n_points())
 {
   std::vector<Stress> start(n_points());
   inner_->trial(std::vector<Gradient>(n_points(), Gradient{}), start);
@@ -120,19 +119,6 @@ void Viscoelastic::trial(std::span<const Gradient> increments, std::span<Stress>
   has_trial_ = true;
 }
 
-void Viscoelastic::commit()
-{
-  inner_->commit();
-  if (std::exchange(has_trial_, false))
-    std::swap(committed_, trial_);
-}
-
-void Viscoelastic::rollback()
-{
-  inner_->rollback();
-  has_trial_ = false;
-}
-
 void Viscoelastic::stiffness(std::span<Stiffness> tangents) const
 {
   inner_->stiffness(tangents);
@@ -155,47 +141,5 @@ void Viscoelastic::wave_moduli(std::span<WaveModuli> moduli) const
   inner_->wave_moduli(moduli);
   for (WaveModuli &m : moduli)
     m = {relaxation_.unrelaxed() * m.p, relaxation_.unrelaxed() * m.s};
-}
-
-MaterialState Viscoelastic::pack() const
-{
-  MaterialState state = inner_->pack();
-  ByteWriter out;
-  out.text(name());
-  out.value(damping_);
-  out.block(state.common);
-  state.common = out.take();
-  for (std::size_t i = 0; i < n_points(); ++i)
-    {
-      out.numbers({&committed_[i * row], row});
-      out.append(state.points[i]);
-      state.points[i] = out.take();
-    }
-  return state;
-}
-
-void Viscoelastic::unpack(const MaterialState &state)
-{
-  ByteReader in(state.common, name());
-  in.expect(in.text(), name());
-  double damping = 0;
-  in.value(damping);
-  if (damping != damping_)
-    in.fail(fmt::format("its damping is {}", damping));
-  const auto common = in.block();
-  in.expect_end();
-  in.expect(state.points.size(), n_points(), "points");
-  MaterialState of_inner{{common.begin(), common.end()}, {}};
-  std::vector<double> rows(committed_.size());
-  for (std::size_t i = 0; i < n_points(); ++i)
-    {
-      ByteReader point(state.points[i], name());
-      point.numbers({&rows[i * row], row}, "numbers in a point");
-      const auto rest = point.rest();
-      of_inner.points.emplace_back(rest.begin(), rest.end());
-    }
-  inner_->unpack(of_inner); // refuses before it changes anything
-  committed_ = std::move(rows);
-  has_trial_ = false;
 }
 } // namespace isostat

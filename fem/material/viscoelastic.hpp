@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fem/material/material.hpp"
+#include "fem/material/outer_material.hpp"
 
 namespace isostat
 {
@@ -40,35 +40,25 @@ struct ZenerBody
 /// M_0 is the modulus of the inner material, of slow loading: that of 1 Hz over at_one_hertz(). Until a time step is
 /// set, and in statics, the material is the inner one.
 /// tested: tests/fem/material/viscoelastic_test.cpp, tests/apps/column_damping_test.py
-class Viscoelastic : public Material
+class Viscoelastic : public OuterMaterial
 {
 public:
   Viscoelastic(std::unique_ptr<Material> inner, double damping);
 
-  std::string name() const override { return "viscoelastic " + inner_->name(); }
-  std::size_t n_points() const override { return inner_->n_points(); }
   void set_time_step(double seconds) override;
   void set_initial_stress(std::span<const Stress> effective) override;
   /// Cost: besides the inner material's, some 100 operations a point.
   void trial(std::span<const Gradient> increments, std::span<Stress> stresses) override;
-  void commit() override;
-  void rollback() override;
   /// Of the inner material, increased by what the relaxing elements bear at the end of the time step.
   void stiffness(std::span<Stiffness> tangents) const override;
   /// Unrelaxed: those of a sudden increment.
   void wave_moduli(std::span<WaveModuli> moduli) const override;
-  MaterialState pack() const override;
-  void unpack(const MaterialState &state) override;
 
 private:
   static constexpr std::size_t row = 6 * (1 + ZenerBody::n); ///< of a point: the inner stress, then h_l
 
-  std::unique_ptr<Material> inner_;
-  double damping_;
   ZenerBody relaxation_;
   std::array<double, ZenerBody::n> kept_{}, taken_{}; ///< of h_l over a time step, of an increment in it
-  std::vector<double> committed_, trial_;
-  std::vector<WaveModuli> moduli_; ///< of the inner material, at the start of a trial
-  bool has_trial_ = false;
+  std::vector<WaveModuli> moduli_;                    ///< of the inner material, at the start of a trial
 };
 } // namespace isostat

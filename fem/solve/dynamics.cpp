@@ -2,6 +2,7 @@
 #include "fem/solve/dynamics.hpp"
 
 #include "base/error.hpp"
+#include "fem/solve/free_field.hpp"
 #include "fem/water/biot_integrals.hpp"
 #include "fem/water/pressure_system.hpp"
 
@@ -45,14 +46,7 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
     }
   if (settings_.large_strain)
     deformed_ = Deformation{space_, space_, u_, space_.frequencies(space_)};
-  const double stable = stable_step();
-  time_step_ = settings_.time_step > 0 ? settings_.time_step : settings_.safety * stable;
-  if (settings_.time_step == 0 && settings_.multiple > time_step_)
-    time_step_ = settings_.multiple / std::ceil(settings_.multiple / time_step_);
-  if (time_step_ > stable)
-    throw InputError(fmt::format("time step = {:.6g} s; must be <= {:.6g} s, the stable step of the stiffest element. "
-                                 "Give a smaller one, or leave it out.",
-                                 time_step_, stable));
+  choose_step();
   if (settings_.drainage == Drainage::coupled && space_.mesh().soil.permeability_varies())
     permeable_strains_.assign(space_.n_points(), 0.0);
   prepare_steps();
@@ -77,6 +71,8 @@ void Dynamics::check_settings() const
   if (settings_.drainage == Drainage::coupled && space_.mesh().degree != 2)
     throw InputError("drainage coupled with degree 1; pressure of degree 1 needs displacements of degree 2, or it "
                      "oscillates. Set degree = 2.");
+  if (!settings_.free_fields.empty() && (space_.dimension != 2 || settings_.large_strain))
+    throw InputError("free fields: must be of a block in 2 dimensions with small strain");
   if (!(settings_.safety > 0) || settings_.safety > 1)
     throw InputError(fmt::format("safety = {}; must be in (0, 1], of the stable step", settings_.safety));
   if (!(settings_.time_step >= 0))
@@ -86,6 +82,26 @@ void Dynamics::check_settings() const
     throw InputError(fmt::format("mass damping = {} 1/s; must be >= 0", settings_.mass_damping));
   if (!(settings_.viscosity >= 0))
     throw InputError(fmt::format("viscosity = {} s; must be >= 0", settings_.viscosity));
+}
+
+void Dynamics::choose_step()
+{
+  double stable = stable_step();
+  for (const auto &field : settings_.free_fields)
+    stable = std::min(stable, field->column().stable_step());
+  time_step_ = settings_.time_step > 0 ? settings_.time_step : settings_.safety * stable;
+  if (settings_.time_step == 0 && settings_.multiple > time_step_)
+    time_step_ = settings_.multiple / std::ceil(settings_.multiple / time_step_);
+  if (time_step_ > stable)
+    throw InputError(fmt::format("time step = {:.6g} s; must be <= {:.6g} s, the stable step of the stiffest element. "
+                                 "Give a smaller one, or leave it out.",
+                                 time_step_, stable));
+  for (const auto &field : settings_.free_fields)
+    {
+      field->join(space_);
+      field->column().time_step_ = time_step_;
+      field->column().prepare_steps();
+    }
 }
 
 /// What the time step decides.
@@ -121,12 +137,15 @@ void Dynamics::make_coefficients()
         dashpot_.local_element(i) *=
             settings_.base.density * (i % 3 == 2 ? settings_.base.rock_p_velocity() : settings_.base.shear_velocity);
     }
+  Vector dashpots = dashpot_;
+  for (const auto &field : settings_.free_fields)
+    field->add_dashpots(dashpots);
   if (settings_.surface_traction)
     surface_ = space_.face_area(Face::surface);
   const std::vector<bool> rigid = settings_.drainage == Drainage::undrained ? wet_unknowns() : std::vector<bool>(n);
   for (std::size_t i = 0; i < n; ++i)
     {
-      const double m = mass_.local_element(i), c = settings_.mass_damping * m + dashpot_.local_element(i);
+      const double m = mass_.local_element(i), c = settings_.mass_damping * m + dashpots.local_element(i);
       const bool held = m == 0 || (rigid[i] && i % 3 == 2);
       damping_.local_element(i) = held ? 0 : c;
       update_.local_element(i) = held ? 0 : 1 / (m / time_step_ + c / 2);
@@ -135,7 +154,7 @@ void Dynamics::make_coefficients()
   min_energy_ = 0.5e-6 * mass_.l1_norm() / 3; // of all the soil at 1 mm/s
   loaded_.clear();
   for (unsigned i = 0; i < n; ++i)
-    if (dashpot_.local_element(i) != 0 || surface_.local_element(i) != 0)
+    if (dashpots.local_element(i) != 0 || surface_.local_element(i) != 0)
       loaded_.push_back(i);
   for (unsigned i : space_.fixed_dofs)
     if (i < n)
@@ -211,6 +230,8 @@ SolverState Dynamics::save() const
 {
   FieldWriter write(step_, material_, space_);
   for_each_field(*this, write);
+  for (const auto &field : settings_.free_fields)
+    write.state.parts.push_back(field->column().save());
   return write.state;
 }
 
@@ -218,6 +239,12 @@ void Dynamics::restore(const SolverState &state)
 {
   FieldReader reader(state, space_);
   for_each_field(*this, reader);
+  if (state.parts.size() != settings_.free_fields.size())
+    throw InputError(fmt::format("checkpoint: free fields of {} sides, this run has {}; resume with the scene of the "
+                                 "first run",
+                                 state.parts.size(), settings_.free_fields.size()));
+  for (std::size_t k = 0; k < state.parts.size(); ++k)
+    settings_.free_fields[k]->column().restore(state.parts[k]);
   reader.unpack(material_);
   reader.take();
   const double found_anew = time_step_;

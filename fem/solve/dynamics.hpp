@@ -12,6 +12,7 @@
 
 namespace isostat
 {
+class FreeField;
 class PressureSystem;
 struct PoreFluid;
 
@@ -33,6 +34,7 @@ struct DynamicsSettings
   Base base = {};
   std::array<Motion, 3> motion = {};     ///< along x, y, z: of the base, or of the rock's outcrop if compliant
   SurfaceTraction surface_traction = {}; ///< none: free
+  std::vector<std::shared_ptr<FreeField>> free_fields = {}; ///< of sides, in 2D; each of this run alone
 };
 
 /// Energy since the start, J (per m2 of a column).
@@ -94,8 +96,13 @@ public:
   {
     return (v_.local_element(unknown) - next_.local_element(unknown)) / time_step_;
   }
+  double velocity(unsigned unknown) const ///< likewise: (v+ + v-)/2 of (4), at time() - dt
+  {
+    return (v_.local_element(unknown) + next_.local_element(unknown)) / 2;
+  }
   const Vector &pressure() const { return p_; }                  ///< excess, at time() - dt; zero unless coupled
   std::span<const Stress> stresses() const { return stresses_; } ///< effective, at time(), tension positive
+  std::span<const Stress> skeleton_stresses();                   ///< those of (4): with the viscous stress
   /// Excess pore pressure at the points, compression positive, Pa: of u-p at time() - dt, of an undrained column from
   /// vertical equilibrium at time(), 0 if dry, and above the water table.
   std::vector<double> point_pressure() const;
@@ -113,6 +120,7 @@ public:
 private:
   // dynamics.cpp
   void check_settings() const;
+  void choose_step();
   void prepare_steps();
   void make_coefficients();
   std::vector<bool> wet_unknowns() const;
@@ -165,7 +173,7 @@ private:
   Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C
   Vector dashpot_, surface_;              ///< rho V A of the base, area of the surface
   double min_energy_ = 0;                 ///< J, that no explosion is judged below
-  std::vector<unsigned> loaded_;          ///< unknowns that dashpot or surface load
+  std::vector<unsigned> loaded_;          ///< unknowns that dashpots or surface load
   Vector minus_reference_;                ///< -F of the initial stress
   std::vector<Stress> initial_stresses_;
   std::vector<PoreFluid> lagged_fluids_; ///< of the points, lagged compressibility only

@@ -3,6 +3,7 @@
 #include "fem/solve/dynamics.hpp"
 
 #include "base/error.hpp"
+#include "fem/solve/free_field.hpp"
 #include "fem/water/biot_integrals.hpp"
 #include "fem/water/pressure_system.hpp"
 
@@ -11,7 +12,14 @@
 
 namespace isostat
 {
-/// load_: what comes from the dashpot and the surface. frame_: inertia of a moving base. force_: F - F0.
+std::span<const Stress> Dynamics::skeleton_stresses()
+{
+  if (viscosity_)
+    viscosity_->add(stresses_, total_);
+  return viscosity_ ? total_ : stresses_;
+}
+
+/// load_: what comes from the dashpot, free fields and the surface. frame_: inertia of a moving base. force_: F - F0.
 void Dynamics::find_loads()
 {
   const double t = time();
@@ -31,10 +39,10 @@ void Dynamics::find_loads()
       for (unsigned i : loaded_)
         load_.local_element(i) += surface_.local_element(i) * traction[i % 3];
     }
+  for (const auto &field : settings_.free_fields)
+    field->step(load_);
   force_ = 0; // F(sigma') - F(sigma'_0) of (4), (7)
-  if (viscosity_)
-    viscosity_->add(stresses_, total_);
-  space_.add_internal_force(cells(), viscosity_ ? total_ : stresses_, force_);
+  space_.add_internal_force(cells(), skeleton_stresses(), force_);
   // the difference of two whole sums: zero bit for bit as long as the stresses are those of the start
   const std::size_t n = force_.locally_owned_size();
   for (std::size_t i = 0; i < n; ++i)

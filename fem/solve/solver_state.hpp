@@ -17,7 +17,8 @@ struct SolverState
   std::uint64_t step = 0;
   std::map<std::string, std::vector<double>> vectors; ///< unknowns cell by cell; stresses point by point
   std::map<std::string, double> numbers;
-  MaterialState material; ///< Material::pack()
+  MaterialState material;         ///< Material::pack()
+  std::vector<SolverState> parts; ///< of solvers that this one steps: columns of free fields
 };
 
 /// A solver names the fields of its state once, in

@@ -71,8 +71,9 @@ struct MeshSpec
 /// What holds the sides of a block.
 enum class Sides
 {
-  tied, ///< opposite ones move as one: the block continues forever
-  walls ///< smooth walls of a box that moves with its rigid base
+  tied,      ///< opposite ones move as one: the block continues forever
+  walls,     ///< smooth walls of a box that moves with its rigid base
+  free_field ///< FreeField: level ground without end next to the block, which lets waves out
 };
 
 /// How the block is held.

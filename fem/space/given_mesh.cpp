@@ -13,7 +13,7 @@ constexpr std::array anticlockwise = {0, 1, 3, 2}; ///< corners of a quadrilater
 
 /// Lowest and highest z of a convex cell on the vertical at x; both 0 if that misses it. Of two cells that share a
 /// vertical side the right one has it.
-std::array<double, 2> on_vertical(const GivenMesh &mesh, const GivenMesh::Cell &cell, double x)
+std::array<double, 2> ends_on_vertical(const GivenMesh &mesh, const GivenMesh::Cell &cell, double x)
 {
   std::array<double, 2> ends = {0, 0};
   bool found = false;
@@ -92,23 +92,23 @@ void GivenMesh::sort()
   std::ranges::sort(from_left_);
 }
 
-SoilProfile GivenMesh::borehole(const SoilProfile &soil, double x) const
+std::vector<GivenMesh::Length> GivenMesh::on_vertical(double x) const
 {
-  struct Length
-  {
-    double low, high;
-    unsigned layer;
-  };
-  const double inside = std::min(x, width() * (1 - 1e-12)), near = 1e-9;
+  const double inside = std::min(x, width() * (1 - 1e-12)), near = 1e-9 * width();
   std::vector<Length> lengths;
   for (auto at = std::ranges::lower_bound(from_left_, std::pair(inside - widest_ - near, 0u));
        at != from_left_.end() && at->first <= inside; ++at)
-    if (const auto [low, high] = on_vertical(*this, cells[at->second], inside); high - low > near)
+    if (const auto [low, high] = ends_on_vertical(*this, cells[at->second], inside); high - low > near)
       lengths.push_back({low, high, cells[at->second].layer});
   std::ranges::sort(lengths, std::greater(), &Length::high);
+  return lengths;
+}
+
+SoilProfile GivenMesh::borehole(const SoilProfile &soil, double x) const
+{
   SoilProfile hole = soil;
   hole.layers.clear();
-  for (const auto &[low, high, layer] : lengths)
+  for (const auto &[low, high, layer] : on_vertical(x))
     {
       hole.layers.push_back(soil.layers[layer]);
       hole.layers.back().thickness = high - low;

@@ -46,8 +46,13 @@ struct GivenMesh
   double area(unsigned layer) const;             ///< m2
   /// By area, from the middles of its parts: exact of what is linear in each.
   double mean(unsigned layer, const std::function<double(const Place &)> &value) const;
-  /// What a borehole meets: cells from the surface down as layers of one cell each, whose other properties are those
-  /// of the soil's.
+  struct Length
+  {
+    double low, high; ///< z, m
+    unsigned layer;
+  };
+  std::vector<Length> on_vertical(double x) const; ///< of cells, from the surface down
+  /// What a borehole meets: these cells as layers of one cell each, whose other properties are those of the soil's.
   SoilProfile borehole(const SoilProfile &soil, double x) const;
 
   void sort(); ///< after `cells` and `places` are known, for borehole()

@@ -85,7 +85,7 @@ def main(words=None):
     if name in VIEWS:
         return view(name, rest)
     if name in ("--help", "-h"):
-        print(help_text())
+        return command.run(lambda: print(help_text()))
     elif name == "--version":
         print(f"isostat {_core.__version__}")
     elif name in PROGRAMS and is_built(name):

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The paper's figures as ensembles: monotonic tests at three densities, cyclic tests over a row of preparations,
-drained tests next to the laboratory. And what they leave open: resistance curves, critical states, specimens made in
-other ways, slower tests and usual ones.
+drained tests next to the laboratory.
 
-    isostat study paper                                             2,000 grains, three seeds (90 CPU minutes)
+    isostat study paper                                             2,000 grains, three seeds
     isostat study paper --quick                                     one seed, fewer states (5 CPU minutes)
-    isostat study paper --parts resistance critical ways paces --tables docs/results/paper
-                                                                    what the figures leave open (170 CPU minutes)
     isostat study paper --grains 10000 -o results/paper_10000 --tables docs/results/paper_10000
     isostat study paper --figures docs/results/paper                figures and claims again from tables
 
@@ -16,18 +13,16 @@ import pathlib
 import sys
 
 from isostat.campaign import study
-from studies.paper import claims, figures, plan, tables, variants
+from studies.paper import claims, figures, plan, tables
 from studies.tables import read_csv, write_csv
 
 DEFAULTS, QUICK = {"seeds": 3}, {"seeds": 1}
-MARKDOWN = {"ways": variants.markdown, "paces": variants.markdown}
 SIZES = {"2,000 grains": "paper", "10,000 grains": "paper_10000"}  # folders of their tables, side by side
 
 
 def add_options(line):
     line.add_argument("--grains", type=int, default=2000)
-    line.add_argument("--parts", nargs="+", choices=plan.PARTS, default=list(plan.FIGURES),
-                      help=f"default: {' '.join(plan.FIGURES)}")
+    line.add_argument("--parts", nargs="+", choices=plan.PARTS, default=list(plan.PARTS), help="default: all")
     line.add_argument("--figures", type=pathlib.Path, metavar="FOLDER",
                       help="only figures and claims, from the tables in FOLDER")
 
@@ -51,12 +46,9 @@ def report(store, planned, folder):
 
 
 def write(folder, found):
-    """The tables, and those that are read as texts."""
     for name, rows in found.items():
         if rows:
             write_csv(folder / f"{name}.csv", rows)
-        if rows and name in MARKDOWN:
-            (folder / f"{name}.md").write_text(MARKDOWN[name](rows), encoding="utf-8")
 
 
 def draw(folder):

@@ -3,30 +3,25 @@
 import dataclasses
 
 from studies.scenes import CONTACT, cyclic as cyclic_stage, scene_of
-from studies.speed_error.plan import HUNDREDTH, TENTH
+from studies.speed_error.plan import TENTH
 
 P0 = 200  # kPa, of the paper
 FRICTION = 18  # degrees
-PAPER_RATIO = 0.15  # q_amp/(2 p0') of its cyclic test, 60 kPa
+AMPLITUDE = "60 kPa"  # of its cyclic test
 PAPER = (0.30, 0.64, 0.88)  # its relative densities
 # (e_min, e_max): the paper's, and those of boxes of this few grains, which walls loosen (study void_ratio_limits);
 # at the paper's limits no box of 2,000 grains is as dense as D_r = 0.88
-PAPER_LIMITS, OWN_LIMITS = (0.568, 0.841), {2000: (0.632, 0.896)}
+PAPER_LIMITS, OWN_LIMITS = (0.568, 0.841), {2000: (0.630, 0.893)}
 CELL_LIMITS = (0.518, 0.802)  # of 2,000 grains, the loosest away from walls
-LABORATORY = {0.21: ("TMD2", "TMD3"), 0.51: ("TMD7", "TMD8"), 0.83: ("TMD22", "TMD18")}  # at 100 and at 200 kPa
-PREPARATIONS = range(5, 12)  # friction, degrees
-RATIOS = (0.10, 0.15, 0.20, 0.25)  # q_amp/(2 p0')
-RESISTANCE = (8, 9, 10)  # preparation friction, degrees
-PRESSURES = (50, 200, 400)  # kPa
-CRITICAL = (50, 200, 800)  # kPa: loose packings sheared to their critical state
-LOOSE = 11  # preparation friction of those, degrees
+LABORATORY = {0.21: "TMD3", 0.51: "TMD8", 0.83: "TMD18"}  # drained tests at 200 kPa
+PREPARATIONS = range(7, 12)  # friction, degrees
 AFTER_ONSET = 8  # reversals: four cycles
 LARGE = 5000  # grains
 # Preparation friction, degrees, of large boxes of the paper's densities, instead of a search, whose trials take half an
 # hour each: the loosest that keep their pressure when friction is set (those of D_r = 0.30 do not), nearly the densest
 LARGE_DEGREES = {0.30: FRICTION, 0.88: 0.5}
 
-# the default I = 4e-5 to 0.5 % of strain, ten times that behind it: what that changes is measured (`slow`)
+# the default I = 4e-5 to 0.5 % of strain, ten times that behind it
 FIRST_STRAIN, FAST = 0.005, 4e-4
 DENSITY_OF_GRAINS, D50 = 2650, 0.45e-3
 
@@ -36,39 +31,12 @@ def strain_rate(inertial_number, pressure):
     return inertial_number * (pressure * 1e3 / DENSITY_OF_GRAINS) ** 0.5 / D50
 
 
-@dataclasses.dataclass(frozen=True)
-class Way:
-    """What differs as a specimen is made."""
-
-    specimen: dict = dataclasses.field(default_factory=dict)  # keys of [specimen]
-    grading: dict = dataclasses.field(default_factory=dict)  # keys of [grading]
-    pressure: float = 0  # kPa, at which friction is raised; the compression continues from there
-    cell: bool = False  # no walls
-    own_limits: bool = True  # of the cell; else those of boxes define its density
-    at_once: bool = False  # friction is raised as the test begins, without a new balance
-
-
-NO_WALLS = "periodic cell"
-WAYS = {"": Way(), "compacted at 3/s": Way({"compaction_rate": "3 1/s"}),
-        "compacted at 100/s": Way({"compaction_rate": "100 1/s"}), "damping 0.05": Way({"damping": 0.05}),
-        "damping 0.7": Way({"damping": 0.7}), "friction raised at 20 kPa": Way(pressure=20),
-        "friction raised as the test begins": Way(at_once=True),
-        "sizes of 10 to 90 %": Way(grading={"truncate": [10, 90]}), "thin cloud": Way(grading={"solid_fraction": 0.2}),
-        NO_WALLS: Way(cell=True),
-        "periodic cell, void ratio of the boxes": Way(cell=True, own_limits=False)}
-
-
-DAMPED = {"damping": 0.1}
-# as such tests are usually run: local damping alone, grains that nothing touches fly on, walls set the packing moving
-USUAL = {"damping": 0.2, "contact_damping": 0, "free_grain_damping": 0, "carry_grains": False}
-DEFAULT = "default"
-SLOW = "tenth"  # what happens after the onset needs it
-# how fast a cyclic test is run: keys of [motion]
-PACES = {DEFAULT: DAMPED, SLOW: DAMPED | TENTH, "hundredth": DAMPED | HUNDREDTH,
-         "2/s": USUAL | {"strain_rate": "2 1/s"}, "10/s": USUAL | {"strain_rate": "10 1/s"}}
-LARGE_MOTION = {"damping": 0.02, "load_per_wave": 0.02}  # docs/results/free_grains.md, other sizes
+CELL, SAME_E = "periodic cell", "periodic cell, void ratio of the boxes"  # ways to make a specimen without walls
+DEFAULT, SLOW = "default", "tenth"  # paces; what happens after the onset needs the slow one
+PACES = {DEFAULT: {"damping": 0.1}, SLOW: {"damping": 0.1} | TENTH}  # keys of [motion]
+LARGE_MOTION = {"damping": 0.02, "load_per_wave": 0.02}  # nearer to slow tests than the default
 LARGE_PACES = {DEFAULT: LARGE_MOTION, SLOW: LARGE_MOTION | {"inertial_number": 7e-5}}  # with 10,000 grains
-PACE_DEGREES = 9  # preparation friction of their specimens
+PACE_DEGREES = 9  # preparation friction of specimens of slow tests
 
 
 @dataclasses.dataclass(frozen=True)
@@ -79,9 +47,8 @@ class Packing:
     seed: int
     relative_density: float = 0
     degrees: float = 0
-    pressure: float = P0
     young: float = 10  # GPa
-    way: str = ""  # of WAYS
+    way: str = ""  # in a box, CELL or SAME_E
 
     @property
     def density(self):
@@ -90,23 +57,20 @@ class Packing:
     @property
     def limits(self):
         """By which its relative density is meant."""
-        way = WAYS[self.way]
-        return CELL_LIMITS if way.cell and way.own_limits else OWN_LIMITS.get(self.grains, PAPER_LIMITS)
+        return CELL_LIMITS if self.way == CELL else OWN_LIMITS.get(self.grains, PAPER_LIMITS)
 
     @property
     def label(self):
-        more = [self.density, f"{self.pressure:g} kPa"]
+        more = [self.density, f"{P0} kPa"]
         more += [f"E {self.young:g} GPa"] if self.young != 10 else []
         more += [self.way] if self.way else []
         return ", ".join(more)
 
     def sections(self):
         """Of the scene: how it is made."""
-        way = WAYS[self.way]
-        hard_to_find = self.grains >= LARGE and self.young == 10 and not way.cell
+        hard_to_find = self.grains >= LARGE and self.young == 10 and not self.way
         degrees = self.degrees or (hard_to_find and LARGE_DEGREES.get(self.relative_density))
-        specimen = {"domain": "periodic-cell" if way.cell else "rigid-box",
-                    "pressure": f"{way.pressure or self.pressure:g} kPa"}
+        specimen = {"domain": "periodic-cell" if self.way else "rigid-box", "pressure": f"{P0} kPa"}
         if degrees:
             specimen["preparation_friction"] = f"{degrees:g} deg"
         else:
@@ -116,16 +80,8 @@ class Packing:
             specimen |= {"relative_density": self.relative_density, "e_min": e_min, "e_max": e_max,
                          "density_tolerance": tolerance}
         specimen |= {"compaction_rate": "10 1/s"} if self.young < 1 else {}  # at the default some soft packings explode
-        friction = self.degrees if way.at_once else FRICTION
-        return {"specimen": specimen | way.specimen, "grading": way.grading,
-                "contact": CONTACT | {"young": f"{self.young:g} GPa", "friction": f"{friction:g} deg"}}
-
-    def stages(self):
-        """With which its making ends, as stages of a test."""
-        way = WAYS[self.way]
-        if way.at_once:
-            return [{"kind": "friction", "friction": f"{FRICTION} deg"}]
-        return [{"kind": "compress", "pressure": f"{self.pressure:g} kPa"}] if way.pressure else []
+        return {"specimen": specimen,
+                "contact": CONTACT | {"young": f"{self.young:g} GPa", "friction": f"{FRICTION} deg"}}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -135,8 +91,6 @@ class Run:
     kind: str  # prepare, compression, extension, drained, cyclic
     packing: Packing
     strain: float = 0.05
-    ratio: float = PAPER_RATIO  # q_amp/(2 p0')
-    slow: bool = False
     max_cycles: int = 100
     pace: str = DEFAULT  # of PACES
     after: int = AFTER_ONSET  # reversals, of tests that look behind the onset
@@ -151,24 +105,17 @@ class Run:
 
     @property
     def name(self):
-        how = f"_r{self.ratio:g}" if self.kind == "cyclic" else ""
-        how += f"_{100 * self.strain:g}%" if self.one_way else ""
-        how += "_slow" if self.slow else ""
+        how = f"_{100 * self.strain:g}%" if self.kind in ("compression", "extension", "drained") else ""
         how += f"_{self.pace}" if self.pace != DEFAULT else ""
         p = self.packing
         name = f"{self.kind}{how}_{p.label}_n{p.grains}_s{p.seed}"
-        return name.replace(", ", "_").replace(" ", "").replace("/s", "perSecond")
-
-    @property
-    def one_way(self):
-        return self.kind in ("compression", "extension", "drained")
+        return name.replace(", ", "_").replace(" ", "")
 
     @property
     def looks_behind_onset(self):
-        """The test of the paper: through four cycles after the onset, then drained to its first pressure. Of others,
-        and of large packings at the default's rate, only the cycles to liquefaction are asked."""
-        paper = self.ratio == PAPER_RATIO and self.packing.pressure == P0 and not self.packing.way
-        return paper and (self.pace != DEFAULT or self.packing.grains < LARGE)
+        """The test of the paper: through four cycles after the onset. At the default's rate only the cycles to
+        liquefaction are asked."""
+        return self.pace == SLOW
 
     def scene(self):
         p, is_cyclic = self.packing, self.kind == "cyclic"
@@ -181,23 +128,20 @@ class Run:
             return []
         if self.kind == "cyclic":
             after = self.after if self.looks_behind_onset else 0
-            load = cyclic_stage(f"{2 * self.ratio * self.packing.pressure:g} kPa", cycles=self.max_cycles,
-                                reversals_after_liquefaction=after, strain=0.15)
-            drained = [{"kind": "compress"}] if self.looks_behind_onset else []
-            return [*self.packing.stages(), load, *drained]
+            return [cyclic_stage(AMPLITUDE, cycles=self.max_cycles, reversals_after_liquefaction=after, strain=0.15)]
         stage = {"kind": "drained" if self.kind == "drained" else "undrained-monotonic",
                  "direction": "extension" if self.kind == "extension" else "compression"}
-        if self.slow or self.strain <= FIRST_STRAIN:
+        if self.strain <= FIRST_STRAIN:
             return [stage | {"strain": self.strain}]
-        rate = strain_rate(FAST, self.packing.pressure)
+        rate = strain_rate(FAST, P0)
         return [stage | {"strain": FIRST_STRAIN},
                 stage | {"strain": float(f"{self.strain - FIRST_STRAIN:g}"), "strain_rate": f"{rate:.3g} 1/s"}]
 
     def estimated_seconds(self):
         first = 1e5 * min(self.strain, FIRST_STRAIN) / FIRST_STRAIN
-        fast = 2e4 * (self.strain - FIRST_STRAIN) / 0.01 * (10 if self.slow else 1)
+        fast = 2e4 * (self.strain - FIRST_STRAIN) / 0.01
         search = 1.5e5 if self.packing.relative_density else 5e4
-        cyclic = 2.5e6 if self.pace == SLOW else 5e5 if self.looks_behind_onset else 8e4
+        cyclic = 2.5e6 if self.looks_behind_onset else 8e4
         steps = {"prepare": search, "cyclic": cyclic}.get(self.kind, first + max(0, fast))
         return 1.2e-4 * steps * self.packing.grains / 2000
 
@@ -218,65 +162,36 @@ def figure_1(grains, seeds, whole):
         if whole or seed == seeds[0]:
             runs += [Run("compression", Packing(grains, seed, PAPER[2], young=young), 0.05 if whole else 0.03)
                      for young in (1, 0.1)]
-    if whole:
-        runs += [Run("compression", Packing(grains, seeds[0], density), 0.03, slow=True) for density in PAPER]
     return runs
 
 
 def drained(grains, seeds, whole):
-    return [Run("drained", Packing(grains, seed, density, pressure=pressure), 0.15 if whole else 0.10)
-            for seed in seeds for density in LABORATORY for pressure in ((100, 200) if whole else (P0,))]
+    return [Run("drained", Packing(grains, seed, density), 0.15 if whole else 0.10)
+            for seed in seeds for density in LABORATORY]
 
 
 def cyclic(grains, seeds, whole):
-    """Figure 2: the density of the paper with two more seeds, and a row of preparations, in boxes."""
+    """Figure 2: the density of the paper with two more seeds, and a row of preparations, in boxes; the density and the
+    void ratio of the paper in cells."""
     packings = [Packing(grains, seed, PAPER[1]) for seed in range(1, len(seeds) + 3)]
     packings += [Packing(grains, seed, degrees=d) for seed in seeds for d in PREPARATIONS
                  if whole or d % 2 or d == 10]
+    if grains < LARGE:
+        packings += [Packing(grains, seed, PAPER[1], way=way) for seed in seeds for way in (CELL, SAME_E)]
     return [Run("cyclic", packing, **ends(whole)) for packing in packings]
 
 
 def onset(grains, seeds, whole):
     """Figures 3 and 4: one of these preparations slowly, for what happens around and after the onset; and the same
     specimens at the default's rate, for what the rate does to the number of cycles."""
-    seeds = range(1, len(seeds) + 3) if whole else seeds
     return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), pace=pace, **ends(whole))
             for pace in (SLOW, DEFAULT) for seed in seeds]
 
 
-def resistance(grains, seeds, whole):
-    """All densities at all pressures."""
-    return [Run("cyclic", Packing(grains, seed, degrees=d, pressure=p), ratio=ratio, **ends(whole))
-            for seed in seeds for d in RESISTANCE for p in PRESSURES for ratio in RATIOS]
+PARTS = {"monotonic": figure_1, "cyclic": cyclic, "onset": onset, "drained": drained}
 
 
-def critical(grains, seeds, _):
-    """Loose packings at three pressures, with and without walls, and a looser and a denser one that have to end on the
-    same line."""
-    packings = [Packing(grains, seed, degrees=degrees, pressure=pressure, way=way) for seed in seeds
-                for pressure in CRITICAL for degrees, way in ((LOOSE, ""), (LOOSE, NO_WALLS), (FRICTION, NO_WALLS))]
-    packings += [Packing(grains, seed, PAPER[1], way=NO_WALLS) for seed in seeds]
-    return [Run("drained", packing, 0.30) for packing in packings]
-
-
-def ways(grains, seeds, whole):
-    """Specimens of the density of the paper, made in other ways."""
-    packings = [Packing(grains, seed, degrees=5, way=name) if way.at_once else
-                Packing(grains, seed, PAPER[1], way=name) for seed in seeds for name, way in WAYS.items()]
-    return [Run("cyclic", packing, **ends(whole)) for packing in packings]
-
-
-def paces(grains, seeds, whole):
-    """The test of the paper slower, and as it is usually run, on specimens that liquefy in some tens of cycles."""
-    return [Run("cyclic", Packing(grains, seed, degrees=PACE_DEGREES), pace=pace,
-                **ends(whole) | ({"after": 3} if pace == "hundredth" else {})) for seed in seeds for pace in PACES]
-
-
-FIGURES = {"monotonic": figure_1, "cyclic": cyclic, "onset": onset, "drained": drained}
-PARTS = {**FIGURES, "resistance": resistance, "critical": critical, "ways": ways, "paces": paces}
-
-
-def runs_of(grains, n_seeds, whole=False, parts=tuple(FIGURES)):
+def runs_of(grains, n_seeds, whole=False, parts=tuple(PARTS)):
     """All runs, each once, specimens first. Not the whole: fewer states, for half an hour."""
     tests = list(dict.fromkeys(run for part in parts for run in PARTS[part](grains, range(1, n_seeds + 1), whole)))
     packings = list(dict.fromkeys(run.packing for run in tests))

@@ -4,7 +4,7 @@ import numpy as np
 
 from studies.ensembles import ensemble
 from studies.history import History
-from studies.paper import lab, plan, resistance, states, variants
+from studies.paper import lab, plan, states
 from studies.tables import number, read_csv
 
 STRAINS = np.concatenate([np.arange(0, 0.1, 0.001), np.arange(0.1, 0.5, 0.01), np.arange(0.5, 20.01, 0.1)])  # %
@@ -26,16 +26,10 @@ def relative_density(e, limits):
 
 
 def history_of(run, folder):
-    """The history; that of a cyclic test without the stages that make and drain the specimen, with the volumetric
-    strain of the latter, `drained_strain`."""
+    """The history; that of a cyclic test with the redundancy index that counts walls."""
     history = History(folder)
     if run.kind == "cyclic":
         history.IR_walls = states.redundancy_with_walls(history, run.packing.grains)
-        rows = history.stage == len(run.packing.stages())
-        begin = history.e[rows][0]
-        history.drained_strain = (begin - history.e[-1]) / (1 + begin)
-        history.p0 = history.p[rows][0]
-        history.keep(rows)
     return history
 
 
@@ -45,32 +39,25 @@ class Results:
                       if run.kind != "prepare" and store.is_done(run)]
 
     def of(self, *kinds):
-        """Tests of these kinds, except for the variants."""
-        return [(run, history) for run, history in self.tests
-                if run.kind in kinds and not run.packing.way and run.pace in (plan.DEFAULT, plan.SLOW)]
+        return [(run, history) for run, history in self.tests if run.kind in kinds]
 
     def groups(self, *kinds):
         """Tests that differ in their seed alone."""
         found = {}
         for run, history in self.of(*kinds):
-            found.setdefault((run.kind, run.packing.label, run.slow, run.ratio, run.pace), []).append((run, history))
+            found.setdefault((run.kind, run.packing.label, run.pace), []).append((run, history))
         return found
 
     def tables(self):
-        tables = {"undrained_states": self.undrained_states(), "undrained_curves": self.undrained_curves(),
+        return {"undrained_states": self.undrained_states(), "undrained_curves": self.undrained_curves(),
                   "drained_states": self.drained_states(), "drained_curves": self.drained_curves(),
                   "cyclic_tests": self.cyclic_tests(), "half_cycles": self.half_cycles(),
-                  "cyclic_curves": self.cyclic_curves(), "cyclic_path": self.cyclic_path(),
-                  "ways": variants.ways(self.tests), "paces": variants.paces(self.tests),
-                  "reconsolidation": resistance.reconsolidation(self.of("cyclic")),
-                  "critical_states": resistance.critical_states(self.tests)}
-        tables["resistance"] = resistance.curves([row for row in tables["cyclic_tests"] if row["pace"] == plan.DEFAULT])
-        return tables
+                  "cyclic_curves": self.cyclic_curves(), "cyclic_path": self.cyclic_path()}
 
     def undrained_states(self):
         rows = []
         for run, history in self.of("compression", "extension"):
-            row = {"direction": run.kind, "slow": run.slow, **identity(run, history)}
+            row = {"direction": run.kind, **identity(run, history)}
             for state, numbers in states.undrained_numbers(history).items():
                 row.update({f"{state}: {name}": value for name, value in zip(UNDRAINED, numbers)})
             strain = np.maximum.accumulate(np.abs(history.eps_y))
@@ -104,23 +91,21 @@ class Results:
     def cyclic_tests(self):
         rows = []
         for run, history in self.of("cyclic"):
-            row = {**identity(run, history), "p0' (kPa)": run.packing.pressure, "q_amp/(2 p0')": run.ratio,
-                   "pace": run.pace, "steps": history.step[-1] - history.step[0],
+            row = {**identity(run, history), "pace": run.pace, "steps": history.step[-1] - history.step[0],
                    **states.cyclic_numbers(history)}
             rows.append(row)
         return rows
 
     def half_cycles(self):
-        return [{"specimen": run.packing.label, "q_amp/(2 p0')": run.ratio, "pace": run.pace,
-                 "seed": run.seed, "half cycle": k + 1,
-                 **row} for run, history in self.of("cyclic") for k, row in enumerate(states.half_cycles(history))]
+        return [{"specimen": run.packing.label, "pace": run.pace, "seed": run.seed, "half cycle": k + 1, **row}
+                for run, history in self.of("cyclic") for k, row in enumerate(states.half_cycles(history))]
 
     def cyclic_curves(self):
-        """Of the amplitude of the paper: means over the seeds that liquefy, on the axis of states.phases()."""
+        """Of slow tests: means over the seeds that liquefy, on the axis of states.phases()."""
         rows = []
-        for (_, label, _, ratio, pace), tests in self.groups("cyclic").items():
+        for (_, label, pace), tests in self.groups("cyclic").items():
             found = [(history, states.phases(history)) for _, history in tests if history.onset is not None]
-            if ratio != plan.PAPER_RATIO or not found:
+            if pace != plan.SLOW or not found:
                 continue
             for k, (x, _) in enumerate(min((axis for _, axis in found), key=len)):
                 row = {"specimen": label, "pace": pace, "phase": x, "seeds": len(found)}
@@ -135,8 +120,7 @@ class Results:
         found = [(run, h) for run, h in self.of("cyclic") if run.looks_behind_onset and h.onset is not None]
         if not found:
             return []
-        run, h = min(found, key=lambda test: (test[0].pace != plan.SLOW,
-                                              abs(test[1].reversals[test[1].onset] / 2 - PAPER_CYCLES)))
+        run, h = min(found, key=lambda test: abs(test[1].reversals[test[1].onset] / 2 - PAPER_CYCLES))
         rows, last, reversals = [], np.full(3, -np.inf), set(h.reversal_rows)
         for k in range(len(h.p)):
             here = np.array([h.p[k] / (0.01 * h.p0), h.q[k] / 4e3, h.eps_y[k] / 1e-4])
@@ -171,7 +155,7 @@ def phase_numbers(column, found):
 def curves(groups, values, names):
     """Mean and standard deviation at equal |axial strain|, to the strain that all seeds reach."""
     rows = []
-    for (kind, label, slow, *_), tests in groups.items():
+    for (kind, label, _), tests in groups.items():
         end = min(100 * np.abs(history.eps_y[-1]) for _, history in tests)
         grid = STRAINS[STRAINS <= end * (1 + 1e-9)]
         found = []
@@ -180,7 +164,7 @@ def curves(groups, values, names):
             found.append([np.interp(grid, order, column) for column in values(history)])
         found = np.array(found)  # seeds, columns, strains
         for k, strain in enumerate(grid):
-            row = {"test": kind, "specimen": label, "slow": slow, "seeds": len(tests), "|eps_1| (%)": strain}
+            row = {"test": kind, "specimen": label, "seeds": len(tests), "|eps_1| (%)": strain}
             for column, name in enumerate(names):
                 row[name], row[f"{name} s.d."], *_ = ensemble(found[:, column, k])
             rows.append(row)
@@ -189,10 +173,9 @@ def curves(groups, values, names):
 
 # Tables whose rows stand for themselves
 ADDED = ("undrained_states", "undrained_curves", "drained_states", "drained_curves", "cyclic_tests", "half_cycles",
-         "cyclic_curves", "reconsolidation")
+         "cyclic_curves")
 # Columns of which two rows of one test or curve differ in none
-TEST = ("test", "direction", "slow", "specimen", "grains", "seed", "p0' (kPa)", "q_amp/(2 p0')", "pace",
-        "laboratory test")
+TEST = ("test", "direction", "specimen", "grains", "seed", "pace", "laboratory test")
 
 
 def merged(path, rows):

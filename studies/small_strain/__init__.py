@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Stiffness against pressure, wave speed against depth, modulus reduction and damping, with both contact laws."""
 import dataclasses
-import itertools
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -9,7 +8,7 @@ import numpy as np
 from studies.drawing import save
 from studies.ensembles import mean_and_error, text_of
 from studies.small_strain import measure, published
-from studies.tables import markdown
+from studies.tables import write_tables
 
 LAWS = {
     "linear-rolling": {"young": "10 GPa"},
@@ -23,9 +22,7 @@ GROUND = {  # of deposits: contact parameters that give shear waves of some 150 
     "hertz-mindlin": {"law": "hertz-mindlin", "young": "38 GPa"},
 }
 REDUCTION_PRESSURES = (25, 100, 400)
-AMPLITUDES = (1e-6, 3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2)
-DAMPING = 0.2  # local, of packings that answer to a strain; halved as well up to SMALL
-SMALL = 1e-5
+AMPLITUDES = (1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3)
 COLOURS = {"linear-rolling": "tab:blue", "hertz-mindlin": "tab:red", "asperities": "tab:green"}
 LOST = 0.05  # G/G_max below which a cycle is that of a liquid: its damping ratio means nothing
 NAMES = {"linear-rolling": "linear law, E = 10 GPa", "hertz-mindlin": "Hertz-Mindlin, quartz",
@@ -41,16 +38,13 @@ class Run:
     seed: int
     pressure: int = 20          # kPa; of `stiffness` the first one
     amplitude: float = 0        # of gamma
-    drained: bool = False
-    damping: float = DAMPING
     grains: int = 1000
 
     @property
     def name(self):
         name = f"{self.kind}_{self.law}_{self.degrees}deg_seed{self.seed}"
         if self.kind == "reduction":
-            name += f"_{self.pressure}kPa_{self.amplitude:.0e}_{'drained' if self.drained else 'undrained'}"
-            name += "" if self.damping == DAMPING else f"_damping{self.damping:g}"
+            name += f"_{self.pressure}kPa_{self.amplitude:.0e}"
         return name
 
     @property
@@ -76,10 +70,9 @@ def velocity(seeds, grains, _):
 
 
 def reduction(seeds, grains, amplitudes):
-    every = [Run("reduction", law, REDUCTION_DEGREES, seed, pressure, amplitude, drained, damping, grains)
-             for damping in (DAMPING, DAMPING / 2) for seed in range(1, seeds + 1) for amplitude in amplitudes
-             for pressure in REDUCTION_PRESSURES for law in LAWS for drained in (False, True)]
-    return [run for run in every if run.damping == DAMPING or run.amplitude <= SMALL]
+    return [Run("reduction", law, REDUCTION_DEGREES, seed, pressure, amplitude, grains)
+            for seed in range(1, seeds + 1) for amplitude in amplitudes for pressure in REDUCTION_PRESSURES
+            for law in LAWS]
 
 
 PARTS = {"stiffness": stiffness, "velocity": velocity, "reduction": reduction}
@@ -89,7 +82,7 @@ QUICK = {"seeds": 1, "grains": 200, "amplitudes": [1e-4]}
 
 def add_options(line):
     line.add_argument("--grains", type=int, help="of a packing (default 1000)")
-    line.add_argument("--amplitudes", type=float, nargs="+", help="of shear strain (default: 1e-6 to 1e-2)")
+    line.add_argument("--amplitudes", type=float, nargs="+", help="of shear strain (default: 1e-5 to 3e-3)")
     line.add_argument("--parts", nargs="+", choices=PARTS, help="default: all")
 
 
@@ -130,8 +123,8 @@ def stiffness_table(results):
             rows.append([NAMES[law], f"{degrees}°", text([s["void_ratio"] for s in at], 3),
                          text([s["coordination"] for s in at], 2), text([s["shear_modulus"] for s in at], 0, 1e-6),
                          text(published_g, 0, 1e-6), text([exponent(one, 15e3, 900e3) for one in states], 3)])
-    return markdown(["law", "prepared at", "e at 100 kPa", "Z at 100 kPa", "G at 100 kPa, MPa", "correlation, MPa",
-                     "n, 20 to 800 kPa"], rows)
+    return ["law", "prepared at", "e at 100 kPa", "Z at 100 kPa", "G at 100 kPa, MPa", "correlation, MPa",
+            "n, 20 to 800 kPa"], rows
 
 
 def draw_stiffness(results, path):
@@ -170,8 +163,8 @@ def velocity_table(results):
     rows = [[str(linear[0]), *(cell for _, v, target in (linear, hertz)
                                for cell in (text(v, 0), text(np.array(v) / np.array(target), 2)))]
             for linear, hertz in zip(*(velocity_rows(results, law) for law in LAWS), strict=True)]
-    return markdown(["depth, m", "linear law, 1 GPa, m/s", "over the correlation", "Hertz-Mindlin, 38 GPa, m/s",
-                     "over the correlation"], rows)
+    return ["depth, m", "linear law, 1 GPa, m/s", "over the correlation", "Hertz-Mindlin, 38 GPa, m/s",
+            "over the correlation"], rows
 
 
 def draw_velocity(results, path):
@@ -190,48 +183,34 @@ def draw_velocity(results, path):
 
 
 # ---- modulus reduction and damping
-def chosen(results, law, pressure, drained, amplitude, damping=DAMPING):
+def chosen(results, law, pressure, amplitude):
     """Results of all seeds of one point."""
-    return [r for r in results if r["law"] == law and r["pressure"] == pressure and r["drained"] == drained
-            and r["damping"] == damping and abs(r["amplitude"] / amplitude - 1) < 1e-6]
+    return [r for r in results if r["law"] == law and r["pressure"] == pressure
+            and abs(r["amplitude"] / amplitude - 1) < 1e-6]
 
 
-def reduction_table(results, drained):
+def reduction_table(results):
     """G/G_max and damping ratio, one row for each amplitude."""
     columns = [(law, pressure) for law in LAWS for pressure in REDUCTION_PRESSURES]
     rows = []
     for amplitude in AMPLITUDES:
         cells = []
         for law, pressure in columns:
-            runs = chosen(results, law, pressure, drained, amplitude)
+            runs = chosen(results, law, pressure, amplitude)
             reduction = [r["secant"] / r["shear_modulus"] for r in runs]
             damping = text([r["damping_ratio"] for r in runs], 2, 100) + " %"
             cells.append("" if not runs else text(reduction, 3) + "; " + (damping if min(reduction) > LOST else "lost"))
         if any(cells):
             rows.append([f"{amplitude:.0e}", *cells])
-    return markdown(["γ", *(f"{'linear' if law == 'linear-rolling' else 'Hertz'}, {pressure} kPa"
-                            for law, pressure in columns)], rows)
+    heads = [f"{'linear' if law == 'linear-rolling' else 'Hertz'}, {pressure} kPa" for law, pressure in columns]
+    return ["γ", *heads], rows
 
 
-def halved_table(results):
-    """Damping ratio below 1e-5 with the local damping and with half of it."""
-    rows = []
-    for law, pressure, amplitude, drained in itertools.product(
-            LAWS, REDUCTION_PRESSURES, [a for a in AMPLITUDES if a <= SMALL], (True, False)):
-        both = [chosen(results, law, pressure, drained, amplitude, damping) for damping in (DAMPING, DAMPING / 2)]
-        if all(both):
-            rows.append([law, str(pressure), f"{amplitude:.0e}", "drained" if drained else "undrained",
-                         *(text([r["damping_ratio"] for r in found], 4, 100) for found in both),
-                         *(text([r["secant"] / r["shear_modulus"] for r in found], 4) for found in both)])
-    return markdown(["law", "p', kPa", "γ", "", "damping ratio, %", "with half the damping of grains", "G/G_max",
-                     "with half"], rows)
-
-
-def curve(results, law, pressure, drained):
+def curve(results, law, pressure):
     """Amplitudes that were run, G/G_max and damping with their standard errors."""
     points = []
     for amplitude in AMPLITUDES:
-        if runs := chosen(results, law, pressure, drained, amplitude):
+        if runs := chosen(results, law, pressure, amplitude):
             reduction = [r["secant"] / r["shear_modulus"] for r in runs]
             damping = mean_and_error([100 * r["damping_ratio"] for r in runs])
             points.append((amplitude, *mean_and_error(reduction),
@@ -239,7 +218,7 @@ def curve(results, law, pressure, drained):
     return np.array(points).T
 
 
-def draw_reduction(results, drained, path):
+def draw_reduction(results, path):
     """G/G_max above, damping ratio below, one column for each pressure."""
     figure, axes = plt.subplots(2, len(REDUCTION_PRESSURES), figsize=(10, 5.6), layout="constrained", sharex=True,
                                 sharey="row")
@@ -251,7 +230,7 @@ def draw_reduction(results, drained, path):
             axes[0, column].semilogx(gamma, reduction, style, color="0.4", lw=1.2, label=name)
             axes[1, column].semilogx(gamma, 100 * damping, style, color="0.4", lw=1.2)
         for law in LAWS:
-            points = curve(results, law, pressure, drained)
+            points = curve(results, law, pressure)
             if points.size:
                 for row, at in ((0, 1), (1, 3)):
                     axes[row, column].errorbar(points[0], points[at], points[at + 1], fmt="o-", ms=3.5, lw=1,
@@ -263,21 +242,18 @@ def draw_reduction(results, drained, path):
     axes[0, 0].set_ylabel("G/G_max")
     axes[1, 0].set_ylabel("damping ratio (%)")
     axes[1, -1].legend(*axes[0, 0].get_legend_handles_labels(), loc="upper left", frameon=False, fontsize=8)
-    figure.suptitle("drained" if drained else "undrained", fontsize=10)
     save(figure, path, dpi=130)
 
 
 def report(store, planned, folder):
-    """Figures, and tables on stdout."""
+    tables = {}
     if stiffness := read(store, planned, "stiffness"):
         draw_stiffness(stiffness, folder / "stiffness.png")
-        print(stiffness_table(stiffness))
+        tables["stiffness"] = stiffness_table(stiffness)
     if velocity := read(store, planned, "velocity"):
         draw_velocity(velocity, folder / "velocity.png")
-        print("\n" + velocity_table(velocity))
+        tables["velocity"] = velocity_table(velocity)
     if reduction := read(store, planned, "reduction"):
-        for drained in (True, False):
-            draw_reduction(reduction, drained, folder / f"{'drained' if drained else 'undrained'}.png")
-            print(f"\n{'drained' if drained else 'undrained'}: G/G_max; damping ratio\n")
-            print(reduction_table(reduction, drained))
-        print("\n" + halved_table(reduction))
+        draw_reduction(reduction, folder / "drained.png")
+        tables["drained"] = reduction_table(reduction)
+    write_tables(folder, tables)

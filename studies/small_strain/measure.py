@@ -12,6 +12,7 @@ DEPTHS = (1, 2, 3, 5, 7, 10, 15, 20)  # m, of `velocity`
 BUOYANT_WEIGHT = 9.7e3  # N/m3, of saturated ground of 1,970 kg/m3 under water
 CYCLES = 3             # of `reduction`
 STEPS = 12             # increments of a quarter of a cycle
+DAMPING = 0.2          # local, of packings that answer to a strain
 MIN_STEPS = 300        # time steps of an increment, at least
 TOLERANCE = 1e-4       # of stresses that are kept, over p'
 NORMAL = np.eye(3, dtype=bool)
@@ -79,15 +80,15 @@ def loop(gamma, tau):
 
 
 def reduction(results, run, contact):
-    """Cycles of simple shear. Drained: the normal stresses stay what they are; undrained: the volume does."""
+    """Drained cycles of simple shear: the normal stresses stay what they are."""
     run = types.SimpleNamespace(**run)
-    rve = element(results, run, contact, damping=run.damping)
+    rve = element(results, run, contact, damping=DAMPING)
     first = state(rve)
     kept, increment = rve.stress * NORMAL, np.zeros((3, 3))
     gamma, tau, pressure = [0.0], [rve.stress[0, 1]], [first["mean_stress"]]
     for sign in [1] * STEPS + ([-1] * 2 * STEPS + [1] * 2 * STEPS) * CYCLES:
         increment[0, 1] = sign * run.amplitude / STEPS
-        accepted(rve.mixed(increment, kept, NORMAL, TOLERANCE) if run.drained else rve.undrained(increment))
+        accepted(rve.mixed(increment, kept, NORMAL, TOLERANCE))
         gamma.append(gamma[-1] + increment[0, 1])
         tau.append(rve.stress[0, 1])
         pressure.append(-np.trace(rve.stress) / 3)

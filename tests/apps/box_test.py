@@ -205,3 +205,38 @@ class Box(ColumnTest):
 
     def test_continues_where_it_was_stopped(self):
         self.assert_goes_on(self.scene, signal.SIGKILL, resume=functools.partial(self.run_on_ranks, 2))
+
+
+class FreeField(ColumnTest):
+    """A slope of sand on rock, and level ground."""
+
+    SLOPE = (BOX.replace('"walls"', '"free-field"').replace("drainage", "relative_viscosity = 50\ndrainage").replace(
+        '"0 m", "12 m"', '"0 m", "4 m", "8 m", "12 m"').replace('"3.6 m", "2.4 m"', '"3 m", "3 m", "3.6 m", "3.6 m"')
+             + '[base]\nkind = "compliant"\ndensity = "2300 kg/m3"\nshear_velocity = "500 m/s"\n')
+
+    def test_level_ground_is_a_column(self):
+        level = re.sub(r"ground_. = .*\n", "", self.SLOPE).replace("safety = 0.5", 'time_step = "0.4 ms"')
+        box, summary = self.rows_of(level, "level")
+        column, _ = self.rows_of(re.sub(r"\[mesh\][^\[]*", "[mesh]\npoints = 3\n", level), "column")
+        self.assertGreater(summary["max_ru"], 0.5)
+        for name, share in (("surface_ux", 1e-4), ("surface_uz", 1e-2)):
+            self.assert_near(box[name], column[name], share * np.abs(column[name]).max(),
+                             "Newton's tolerance of the soil that settles, which sand that liquefies magnifies")
+
+    def test_ranks_and_restarts(self):
+        scene = self.scene = self.write("slope.toml", self.SLOPE)
+        options = settings(analysis__duration="0.3 s")
+        self.assert_goes_on(scene, signal.SIGKILL, *options, resume=functools.partial(self.run_on_ranks, 2))
+        rows, _ = self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", self.SLOPE), "rest")
+        self.assertEqual(np.abs(rows["surface_ux"]).max(), 0, "bit for bit")
+        self.scene = self.write("shared.toml", re.sub(r"(profile|paraview)_interval.*\n", "", self.SLOPE))
+        self.check_shared_mesh((2,), MOTION, 1e-7, *DISTRIBUTED, *options)
+
+    def test_a_mesh_of_a_file_finds_the_same(self):
+        short = settings(analysis__duration="0.3 s")
+        self.assert_done(self.run_column(self.write("slope.toml", self.SLOPE), "-o", "in_a_box", *short))
+        self.write("slope.msh", gmsh_text(6, 3, lambda x, z: (12 * x, z * (3 + 0.6 * min(max(3 * x - 1, 0), 1)))))
+        text = re.sub(r"(width|cells_across|ground_.|thickness|cells) = .*\n", "", self.SLOPE)
+        drawn = self.write("drawn.toml", text.replace("sides =", 'file = "slope.msh"\nsides ='))
+        self.assert_done(self.run_column(drawn, "-o", "drawn", *short))
+        self.check_numbers("in_a_box", "drawn", MOTION, 1e-5)

@@ -212,6 +212,11 @@ class Bare(AppTest):
         self.assert_refused(self.run_app("isostat", "librray"), "librray: unknown command of isostat. Did you mean "
                             "library?")
 
+    def test_a_reader_that_stops_reading(self):
+        for words in ((), ("sands",)):
+            done = self.run_command(["sh", "-c", '"$0" "$@" | true', str(BIN / "isostat"), *words])
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_isostat_calls_programs(self):
         """With what follows, and their exit codes."""
         self.assertEqual(self.run_app("isostat", "element_test", "--print-defaults").stdout,

@@ -34,6 +34,10 @@ class Box(grain_column_test.GrainColumnTest):
         self.scene = self.write("box.toml", BOX.format(cache=self.cache))
 
     def test_ranks_threads_and_kills(self):
+        """Between free fields, whose columns have packings of their own."""
+        slope = BOX.replace('"walls"', '"free-field"').replace("cells_across = 2", "cells_across = 3").replace(
+            '"0 m", "6 m"', '"0 m", "2 m", "4 m", "6 m"').replace('"3 m", "2.6 m"', '"3 m", "3 m", "2.6 m", "2.6 m"')
+        self.scene = self.write("box.toml", slope.format(cache=self.cache))
         self.assert_done(self.run_column(self.scene, "-o", "whole", "-q"))
         self.assert_done(self.run_on_ranks(3, self.scene, "-o", "ranks", "-q"))
         self.assert_same_bytes("whole", "ranks")

@@ -5,7 +5,7 @@ import io
 import signal
 
 from isostat.campaign import study
-from support import BIN, ROOT, TIME_LIMIT, AppTest, tiny_scene, wait_until
+from support import ROOT, TIME_LIMIT, AppTest, tiny_scene, wait_until
 
 TINY = '''"""A tiny study."""
 import dataclasses
@@ -77,8 +77,6 @@ class Studies(AppTest):
         self.assertIn("paper", names)
         for name in names:
             with self.subTest(name):
-                if name == "quartz_deposit" and not (BIN / "soil_column").exists():
-                    continue
                 with contextlib.redirect_stdout(io.StringIO()) as said:
                     self.assertEqual(study.main([name, "--dry-run", "--quick"]), 0)
                 self.assertRegex(said.getvalue(), r"^[1-9]\d* runs, (\d+) to do, some \d+ CPU minutes\n$")

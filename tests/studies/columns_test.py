@@ -7,16 +7,13 @@ import io
 import sys
 import types
 
-import h5py
-
 from isostat.campaign import engines, study
-from studies import column_error as error_plan
 from support import BIN, AppTest
 
 sys.argv[0] = str(BIN / "isostat")  # next to the programs
 
-LIBRARIES = {"column_ensemble": (300, 3000), "column_error": (250, 500, 1000, 2000, 4000)}
-OTHERS = "column_dissipation", "column_fitted", "column_others", "column_phenomena"
+LIBRARIES = {"column_ensemble": (300,), "grain_column": (300, 1000)}
+OTHERS = "canyon", "column_dissipation", "column_fitted", "column_others", "column_phenomena", "slopes_and_plates"
 
 
 class StudiesOfColumns(AppTest):
@@ -81,24 +78,6 @@ class StudiesOfColumns(AppTest):
         runs = [types.SimpleNamespace(spent=spent, estimated_seconds=lambda: 10) for spent in (20, 15, 0)]
         store = types.SimpleNamespace(is_done=lambda run: run is runs[0], cpu_seconds=lambda run: run.spent)
         self.assertEqual(study.what_is_left(store, runs), (runs[1:], 5 + 20), "at the speed of the first")
-
-    def test_shared_packings(self):
-        """A packing in situ has the name that soil_column looks for where grains move otherwise."""
-        source, target = (self.folder / name for name in ("in_situ.h5", "other.h5"))
-        motion = {"contact_damping": 0.0, "damping": 0.1, "free_grain_damping": 0.0, "inertial_number": 4e-5}
-        words = ["0"] * 9
-        for key, place in error_plan.PLACES.items():
-            words[place] = f"{error_plan.MOTION[key]:.17g}"
-        name = error_plan.cache_name(" ".join(words))
-        with h5py.File(source, "w") as file:
-            file.create_group(f"{name}/provenance").attrs["recipe"] = " ".join(words)
-        for _ in range(2):  # a second time changes nothing
-            error_plan.share_packings(source, target, motion)
-        with h5py.File(target) as file:
-            (entry,) = file.values()
-            recipe = entry["provenance"].attrs["recipe"]
-            self.assertEqual(entry.name, "/" + error_plan.cache_name(recipe))
-        self.assertEqual({key: float(recipe.split(" ")[place]) for key, place in error_plan.PLACES.items()}, motion)
 
     def test_a_study(self):
         module, options = self.loaded("column_phenomena")

@@ -19,6 +19,12 @@ def pages():
     return {name: re.findall(r"\]\(\.\./(docs/results/\w+\.md)", row) for name, row in rows}
 
 
+def last_cells():
+    """{study: minutes and revision}, by the same table."""
+    text = (ROOT / "studies/README.md").read_text(encoding="utf-8")
+    return dict(re.findall(r"^\| `(\w+)` \|.*\| ([^|]*\| [^|]*) \|$", text, re.M))
+
+
 def says_when(page, name):
     """Whether a paragraph that names the study says that it is not of today's program."""
     paragraphs = (ROOT / page).read_text(encoding="utf-8").split("\n\n")
@@ -41,6 +47,10 @@ class Stamps(unittest.TestCase):
                     self.assertTrue(is_fresh or says_when(page, name), f"a default, or the study {name}, has changed. "
                                     f"Run isostat study {name}, or say in a paragraph that names it when it was made, "
                                     "and that it has not been run again since.")
+
+    def test_minutes_and_revisions_of_the_table_are_those_of_the_stamps(self):
+        for name, cells in last_cells().items():
+            self.assertEqual(cells, study.cells_of(STAMPS[name]) if name in STAMPS else " | ", name)
 
     def test_a_default_that_changes_is_noticed(self):
         paper, as_run = study.load("paper"), study.as_run

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <string_view>
 #include <tuple>
 
 namespace isostat::test
@@ -60,11 +61,10 @@ inline GradingSpec small_grading(std::uint64_t grains)
 
 /// A real specimen in seconds: cloud, compression to 200 kPa at a preparation friction, 18 deg, balance. Made once per
 /// program and kept.
-inline const Snapshot &specimen(std::uint64_t grains, double preparation_degrees,
-                                const std::string &domain = "rigid-box")
+inline const Snapshot &specimen(std::uint64_t grains, double preparation_degrees, std::string_view domain = "rigid-box")
 {
   static std::map<std::tuple<std::uint64_t, double, std::string>, Snapshot> made;
-  const auto key = std::tuple(grains, preparation_degrees, domain);
+  const auto key = std::tuple(grains, preparation_degrees, std::string(domain));
   if (!made.contains(key))
     {
       Unobserved nobody;

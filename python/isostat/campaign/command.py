@@ -91,6 +91,9 @@ def run(program: Callable[[], None]) -> int:
     except KeyboardInterrupt:
         print("interrupted; what has been run is kept, the same command continues", file=sys.stderr)
         return 130
+    except BrokenPipeError:  # who reads has seen enough: `isostat sands | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except (_core.RunFailure, OSError, MemoryError) as error:
         print(f"failed: {error}", file=sys.stderr)
         return 1

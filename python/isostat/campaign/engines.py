@@ -58,7 +58,7 @@ def engine(name: str | None = None, jobs: int = 1) -> Iterator[concurrent.future
                                    f"{name}`.")
         where = {"scheduler_file": name} if name.endswith(".json") else {"address": name}
         try:
-            client = distributed.Client(**where, timeout="30 s")
+            client = distributed.Client(**where, timeout="120 s")
         except (OSError, ValueError) as error:
             raise _core.InputError(f"--engine {name}: no Dask scheduler answers there ({error}). Start one with "
                                    "`dask scheduler`, and workers with `dask worker`.") from error

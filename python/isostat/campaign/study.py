@@ -27,6 +27,7 @@ import importlib
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tomllib
@@ -144,7 +145,7 @@ def do_runs(study: Any, options: argparse.Namespace, executor: concurrent.future
         folder.mkdir(parents=True, exist_ok=True)
         study.report(store, planned, folder)
         if not options.tables and folder == page_of(study, options):
-            stamp(options.name, study)
+            stamp(options.name, study, sum(map(store.cpu_seconds, planned)) / 60)
         print(f"tables and figures in {folder}")
     if failed:
         raise _core.RunFailure(f"{len(failed)} of {len(planned)} runs failed, the first of them {failed[0].name}: "
@@ -200,12 +201,21 @@ def default_scenes() -> list[str]:
     return [_core.default_scene(), column.stdout]
 
 
-def stamp(name: str, study: Any) -> None:
-    """Notes by which program, and from what scenes, a page was made: tests/studies/stamps_test.py finds it stale."""
-    path = studies_folder() / "stamps.json"
+def stamp(name: str, study: Any, minutes: float) -> None:
+    """Notes by which program, from what scenes, and in how many CPU minutes a page was made, in studies/stamps.json and
+    the table of studies/README.md: tests/studies/stamps_test.py finds it stale."""
+    path, readme = (studies_folder() / file for file in ("stamps.json", "README.md"))
     stamps = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    stamps[name] = {"revision": _core.__version__, **fingerprint(name, study)}
+    stamps[name] = {"revision": _core.__version__, "minutes": round(minutes), **fingerprint(name, study)}
     write_replacing(path, json.dumps(dict(sorted(stamps.items())), indent=1) + "\n")
+    if readme.is_file():
+        write_replacing(readme, re.sub(rf"^(\| `{name}` \|.*)\|[^|]*\|[^|]*\|$", rf"\1| {cells_of(stamps[name])} |",
+                                       readme.read_text(encoding="utf-8"), flags=re.M))
+
+
+def cells_of(stamp: dict[str, Any]) -> str:
+    """The last two of the table: CPU minutes and revision."""
+    return f"{stamp['minutes']} | {stamp['revision'].split('(')[-1].rstrip(')')}"
 
 
 def page_of(study: Any, options: argparse.Namespace) -> pathlib.Path:

@@ -133,6 +133,10 @@ TEST(BoxScene, RefusesWhatCannotBeInABox)
   expect_refused(box(), {"mesh.sides", "2 dimensions only", "is 3"}, {"mesh.dimension=3"});
   expect_refused(box("[base]\nkind = \"compliant\"\ndensity = \"2300 kg/m3\"\nshear_velocity = \"800 m/s\"\n"),
                  {"base.kind", "must be \"rigid\""});
+  expect_refused(box("", ground), {"mesh.sides", "level next to each side"}, {"mesh.sides=free-field"});
+  expect_refused(box(), {"analysis.large_strain", "must be false"},
+                 {"mesh.sides=free-field", "analysis.large_strain=true"});
+  expect_refused(with_plate(), {"mesh.sides", "\"walls\" with a plate"}, {"mesh.sides=free-field"});
   expect_refused(box(), {"mesh.points", "at least the degree, 2"}, {"mesh.points=1"});
   expect_refused(box("[slope]\nangle = \"5 deg\"\n"), {"slope.angle", "ground_x"});
   expect_refused(box("[water]\ntable = \"1 m\"\n"), {"water.table", "must be 0 m"});

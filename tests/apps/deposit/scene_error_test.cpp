@@ -153,6 +153,8 @@ TEST(ColumnSceneError, MeshAndWater)
                  {"mesh.distributed=true", "mesh.dimension=2"});
   expect_refused(smallest, {"water.lagged_compressibility", "has no effect"}, {"water.lagged_compressibility=true"});
   EXPECT_EQ(complaint(layer + undrained + dynamic, {"water.lagged_compressibility=true"}), "accepted");
+  expect_refused(layer + undrained + dynamic, {"analysis.large_strain = true; has no effect", "keeps its length"},
+                 {"analysis.large_strain=true"});
   expect_refused(smallest, {"water.base = drained; has no effect unless water.drainage is \"coupled\""},
                  {"water.base=drained"});
   expect_refused(smallest, {"must be \"dry\", \"undrained\" or \"coupled\""}, {"water.drainage=wet"});

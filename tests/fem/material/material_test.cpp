@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.hpp"
 #include "fem/material/composite.hpp"
+#include "fem/material/corotational.hpp"
 #include "fem/material/elastic.hpp"
 #include "fem/material/iwan_curve.hpp"
 #include "fem/material/mohr_coulomb.hpp"
@@ -58,6 +59,8 @@ std::unique_ptr<Material> make_viscoelastic()
 {
   return std::make_unique<Viscoelastic>(make_iwan_of_curve(), 0.02); // in statics: time alone changes no stress
 }
+
+std::unique_ptr<Material> make_corotational() { return std::make_unique<Corotational>(make_viscoelastic()); }
 
 std::unique_ptr<Material> make_umat()
 {
@@ -233,7 +236,8 @@ TEST_P(MaterialProtocol, WaveModuliBoundTheStiffness)
 
 INSTANTIATE_TEST_SUITE_P(All, MaterialProtocol,
                          testing::Values(make_elastic, make_iwan, make_mohr_coulomb, make_layers, make_composite,
-                                         make_nonlocal, make_iwan_of_curve, make_viscoelastic, make_umat));
+                                         make_nonlocal, make_iwan_of_curve, make_viscoelastic, make_corotational,
+                                         make_umat));
 
 TEST(CompositeMaterial, PointsOfTheFirstOfAStackComeFirst)
 {

@@ -217,7 +217,8 @@ TEST(Nonlocal, RefusesAStateOfAnotherLength)
   Nonlocal other(std::make_unique<Elastic>(soft, block.size()), {.length = 0.2, .stiffness = 0.3}, block.places,
                  block.volumes);
   const auto bytes = other.pack();
-  EXPECT_THAT([&] { other.unpack(nonlocal->pack()); }, ThrowsMessage<InputError>(HasSubstr("its length is 0.1 m")));
+  EXPECT_THAT([&] { other.unpack(nonlocal->pack()); },
+              ThrowsMessage<InputError>(HasSubstr("its parameters are 0.1, ")));
   EXPECT_EQ(other.pack(), bytes);
 }
 

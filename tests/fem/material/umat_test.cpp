@@ -115,6 +115,17 @@ TEST(Umat, NamesWhatIsWrong)
   expect_parts(loading("nowhere.so"), {"umat.library = \"nowhere.so\"; cannot be loaded: ", "gfortran -shared"});
 }
 
+/// tau_xz = G (gamma_xz + eps_z): n along z has the acoustic tensor [[G, 0, G], [0, G, 0], [0, 0, 4 G]] for nu = 1/3,
+/// with eigenvalues of at most 4 G; of its symmetric part they are up to (5 + sqrt(10)) / 2 G.
+TEST(Umat, WavesOfATangentThatIsNotSymmetric)
+{
+  Umat umat = probe({50e6, 1.0 / 3, 5, 0});
+  umat.set_initial_stress(std::vector<Stress>(1, in_situ));
+  WaveModuli found[1];
+  umat.wave_moduli(found);
+  EXPECT_GT(found[0].p, (5 + std::sqrt(10.0)) / 2 * 50e6 * (1 - 1e-12));
+}
+
 #ifdef UMAT_DRUCKER_PRAGER
 constexpr double shear_modulus = 50e6, phi = 35, cohesion = 3e3;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Large strains: cells that move with the soil, in every dimension, dry and with water that flows.
 #include "base/error.hpp"
-#include "fem/material/mid_step.hpp"
+#include "fem/material/corotational.hpp"
 #include "fem/solve/dynamics.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/near.hpp"
@@ -98,7 +98,7 @@ std::unique_ptr<Material> soft_soil(bool large_strain, std::size_t n_points)
 {
   auto law = std::make_unique<Elastic>(ElasticParameters{modulus / 3, 0.25}, n_points); // M = 3 G
   if (large_strain)
-    return std::make_unique<MidStep>(std::move(law));
+    return std::make_unique<Corotational>(std::move(law));
   return law;
 }
 

@@ -2,7 +2,8 @@
 /* A UMAT that writes into STATEV what it is called with.
  *
  * PROPS = [G, nu, fault, size]: from |DSTRAN| > size on, and without strain if size = 0, it is wrong in this way:
- * 1 PNEWDT = 0.25, 2 a stress that is not a number, 3 a stress that moves, 4 DDSDDE stays empty. */
+ * 1 PNEWDT = 0.25, 2 a stress that is not a number, 3 a stress that moves, 4 DDSDDE stays empty. Or, without strain,
+ * 5 normal strain along z adds stress in the plane, as in flow that is not associated: DDSDDE is not symmetric. */
 #include <math.h>
 #include <stddef.h>
 
@@ -33,6 +34,8 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
       stress[0] = fault == 2 ? NAN : fault == 3 ? 0.9 * stress[0] : stress[0];
       for (i = 0; fault == 4 && i < 36; ++i)
         ddsdde[i] = 0;
+      if (fault == 5)
+        ddsdde[4 + 6 * 2] = shear; /* from eps_z to tau_xz */
     }
   if (*nstatv < 20)
     return;

@@ -63,7 +63,7 @@ def grain_curves(path: pathlib.Path) -> Curves:
 def history_curves(history, sections: dict, axes: list[str], is_wet: bool, n_depths: int) -> Curves:
     """Motion, settlement and r_u at the times of output.history_interval, straight between the rows."""
     names = [*(f"surface_a{axis}" for axis in axes), "settlement", "max_ru"]
-    if number(sections["slope"]["angle"]) > 0 or sections["mesh"]["sides"] == "walls":
+    if number(sections["slope"]["angle"]) > 0 or sections["mesh"]["sides"] != "tied":
         names.append("surface_ux")
     names += [f"d{k}_ru" for k in range(n_depths if is_wet else 0)]
     interval, end = number(sections["output"]["history_interval"]), number(sections["analysis"]["duration"])
