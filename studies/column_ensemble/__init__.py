@@ -76,7 +76,7 @@ class Run:
             **dict(sample.keys)})
 
     def estimated_seconds(self):
-        return 15 * SAMPLES[self.sample].cost
+        return 18 * SAMPLES[self.sample].cost
 
 
 def library_of(folder):

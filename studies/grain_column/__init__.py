@@ -31,7 +31,7 @@ def runs(options):
     found = []
     for scene, (keys, seconds, _, _) in CASES.items():
         if options.quick:
-            keys, seconds = keys | {"analysis.duration": "0.1 s"}, 15
+            keys, seconds = keys | {"analysis.duration": "0.2 s"}, 15
         file = library_of(options, scene)
         found.append(Run((scene,), SCENES / f"column/{scene}.toml", (("grains.library", file), (
             "grains.cache", options.output / f"in_situ_{scene}.h5"), *keys.items()), seconds, (file,)))
