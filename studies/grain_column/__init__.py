@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Deposits of packings: ten metres that liquefy, and four that are shaken twice. One realisation of each."""
+"""A deposit of packings, ten metres that liquefy: one realisation."""
 import h5py
 import numpy as np
 
@@ -7,35 +7,25 @@ from figures import soil_column
 from isostat.results import read_table
 from studies.columns import SCENES, Run, library
 from studies.drawing import draw_figure
-from studies.history import parsed
 from studies.tables import write_tables
 
 DEFAULTS, QUICK = {}, {}
 LIQUEFIED = 0.95  # r_u
-SMALL = {"grading.grains": 300, "grading.cloud_edge": "3.107 mm"}
-CASES = {  # scene: (keys, CPU seconds, figure and its name)
-    "grains_10m": ({"motion.0.duration": "2 s", "analysis.duration": "2 s"}, 250, "fig_grains_map", "deposit"),
-    "grains_twice": ({}, 100, "fig_grains_map", "twice")}
 
 
-def library_of(options, scene):
-    return options.output / ("library_1000.h5" if scene == "grains_10m" else "library_300.h5")
+def library_of(options):
+    return options.output / "library_1000.h5"
 
 
 def prepare(options, executor):
-    for scene, more in (("grains_10m", {}), ("grains_twice", SMALL)):
-        library(library_of(options, scene), executor, 1, ["20 kPa", "100 kPa"], {"contact.young": "1 GPa"} | more)
+    library(library_of(options), executor, 1, ["20 kPa", "100 kPa"], {"contact.young": "1 GPa"})
 
 
 def runs(options):
-    found = []
-    for scene, (keys, seconds, _, _) in CASES.items():
-        if options.quick:
-            keys, seconds = keys | {"analysis.duration": "0.2 s"}, 15
-        file = library_of(options, scene)
-        found.append(Run((scene,), SCENES / f"column/{scene}.toml", (("grains.library", file), (
-            "grains.cache", options.output / f"in_situ_{scene}.h5"), *keys.items()), seconds, (file,)))
-    return found
+    file, duration, seconds = library_of(options), *(("0.2 s", 15) if options.quick else ("2 s", 110))
+    return [Run(("grains_10m",), SCENES / "column/grains_10m.toml", (
+        ("grains.library", file), ("grains.cache", options.output / "in_situ_grains_10m.h5"),
+        ("motion.0.duration", "2 s"), ("analysis.duration", duration)), seconds, (file,))]
 
 
 def levels(folder):
@@ -53,12 +43,7 @@ def levels(folder):
 
 
 def report(store, planned, folder):
-    found = {run.case[0]: store.folder(run) for run in planned if store.is_done(run)}
-    names = ("settlement", "peak_gamma", "peak_surface", "peak_input", "max_ru")
-    summaries = {scene: parsed(results) for scene, results in found.items()}
-    write_tables(folder, {"columns": (["scene", *names, "CPU minutes"], [
-        [scene, *(float(s.get(name) or np.nan) for name in names), store.cpu_seconds(run) / 60]
-        for run in planned for scene, s in summaries.items() if run.case == (scene,)]), **{
-        f"levels_{scene}": levels(results) for scene, results in found.items()}})
-    for scene, results in found.items():
-        draw_figure(soil_column.DRAWING, CASES[scene][2], results, folder / f"{CASES[scene][3]}.png")
+    for run in filter(store.is_done, planned):
+        results = store.folder(run)
+        write_tables(folder, {"levels": levels(results)})
+        draw_figure(soil_column.DRAWING, "fig_grains_map", results, folder / "deposit.png")
