@@ -79,7 +79,7 @@ class Resume(ColumnTest):
 
     def test_checkpoints_that_are_not_of_this_run(self):
         self.refuse(lambda file: file.attrs.modify("schema_version", np.uint64(2)), "out/checkpoint/last.h5",
-                    "schema 2 was written by another version; this one reads ", "Finish the run with the version")
+                    "schema 2 was written by another version; this one reads 6", "Finish the run with the version")
         self.refuse(lambda file: file["vectors"].move("peak_gamma", "peak_strain"), "out/checkpoint/last.h5",
                     "holds no peak_gamma", "--overwrite")
         self.refuse(lambda file: file["numbers"].attrs.pop("peak_ru"), "out/checkpoint/last.h5",
