@@ -3,7 +3,9 @@
 
 #include "base/error.hpp"
 #include "dem/measure/stress.hpp"
+#include "dem/prepare/random.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -12,6 +14,7 @@ namespace
 {
 constexpr double compressed_balance = 2e-3, rebalanced = 2e-4, at_rest = 5e-5;
 constexpr int rest_attempts = 5; // a packing on the verge can collapse while its walls are held
+constexpr double shaking = 0.1;  // largest velocity of opened packings over sqrt(p/rho)
 constexpr double k0_start = 0.1; // of the vertical stress: isotropic pressure from which K0 consolidation begins
 
 /// Runs a stage on a state and returns what it ends with. Rattlers are not damped: a cloud consists of them.
@@ -43,6 +46,31 @@ void stop_grains(Packing &grains)
     }
 }
 
+/// Opens all contacts by a homogeneous strain and shakes the grains: each component of a velocity is uniform within
+/// shaking sqrt(p/rho), so that their kinetic energy is 0.005 p of their volume (docs/theory.md, section 11).
+Snapshot opened(Snapshot packing, const SpecimenSpec &specimen)
+{
+  const double stretch = 1 + specimen.expansion;
+  packing.contacts.clear();
+  packing.wall_contacts.clear();
+  packing.box = {stretch * packing.box.lower, stretch * packing.box.upper};
+  if (packing.cell)
+    {
+      packing.cell->edges *= stretch;
+      packing.cell->deformation *= stretch;
+      packing.cell->volume_strain += 3 * std::log(stretch);
+    }
+  Packing &grains = packing.grains;
+  const double fastest = shaking * std::sqrt(specimen.pressure / grains.density);
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    {
+      const auto u = uniform(0, RandomStream::shaking, grains.id[i]);
+      grains.set_centre(i, stretch * grains.centre(i));
+      grains.set_linear_velocity(i, fastest * (2 * Vec3(u[0], u[1], u[2]) - Vec3::Ones()));
+    }
+  return packing;
+}
+
 /// @param pressure  Pa   @param balance  unbalanced-force ratio at the end
 template <class Kind>
 Stage servo_stage(double pressure, double balance)
@@ -57,6 +85,7 @@ Stage servo_stage(double pressure, double balance)
 Snapshot compact(const Cloud &cloud, Law law, double friction, const Preparation &how)
 {
   const SpecimenSpec &specimen = how.specimen;
+  const Law of_test = law;
   if (law->friction > 0)
     law->friction = friction;
   Snapshot start;
@@ -70,7 +99,11 @@ Snapshot compact(const Cloud &cloud, Law law, double friction, const Preparation
   stage.of_cloud = true;
   stage.pressure = pressure;
   stage.balance = compressed_balance;
-  return run_stage(start, stage, specimen.damping, how);
+  start = run_stage(start, stage, specimen.damping, how);
+  if (specimen.expansion == 0)
+    return start;
+  start.law = of_test;
+  return run_stage(opened(start, specimen), stage, specimen.damping, how);
 }
 
 Snapshot rebalance(const Snapshot &compacted, const Law &law, const Preparation &how)

@@ -16,6 +16,8 @@ struct Preparation
 
 /// Isotropic compression of a resting cloud to specimen.pressure with the given friction : walls close in under
 /// servo until all three stresses are within 1 % of it and the unbalanced-force ratio is below 2e-3.
+/// With specimen.expansion the packing is then opened by it, its grains are shaken, and it is compressed again with the
+/// friction of `law`: as dense, with fewer contacts (Agnolin and Roux 2007, preparation C).
 /// A specimen with K0 consolidation is compressed to 0.1 of its vertical stress here; the rest follows in rebalance().
 /// @param law       of the contacts; its friction is replaced, unless it has none: then there is none here either
 /// @param friction  preparation friction, tan(phi); 0 runs the frictionless loop

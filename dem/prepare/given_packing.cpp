@@ -225,6 +225,7 @@ SpecimenSpec without_preparation(SpecimenSpec spec)
   spec.relative_density.reset();
   spec.void_ratio.reset();
   spec.preparation_friction.reset();
+  spec.expansion = 0;
   spec.consolidation = SpecimenSpec{}.consolidation;
   if (has_default_limits(spec))
     {

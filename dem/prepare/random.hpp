@@ -10,8 +10,9 @@ namespace isostat
 /// Who draws. Streams of one seed are independent of each other; a new use of random numbers gets a new name here.
 enum class RandomStream : std::uint64_t
 {
-  cloud = 1,   ///< grain positions of the random cloud; counter = grain, sub-counter = attempt
-  packings = 2 ///< which packings a point of soil has; seed = number of the draw, counters = its place
+  cloud = 1,    ///< grain positions of the random cloud; counter = grain, sub-counter = attempt
+  packings = 2, ///< which packings a point of soil has; seed = number of the draw, counters = its place
+  shaking = 3   ///< velocities of an opened packing; counter = id of the grain
 };
 
 /// Four numbers uniform in [0, 1), multiples of 2^-53, from the counter-based generator Philox 4x64, 10 rounds.

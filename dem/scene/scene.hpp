@@ -45,6 +45,7 @@ struct SpecimenSpec : ServoSpec
   std::string consolidation = "isotropic"; ///< or "k0": vertical stress `pressure`, no lateral strain; cell only
   std::optional<double> relative_density, void_ratio;
   std::optional<double> preparation_friction; ///< tan(phi) during isotropic compression
+  double expansion = 0;                       ///< strain by which it is opened and compressed again; 0: it is not
   std::string file;                           ///< a specimen or snapshot (.h5), or "library.h5#entry"
   /// Limits that define the relative density: those of Karlsruhe fine sand as the paper's packings have them. A grading
   /// of the user, and a packing from a file, have none unless they are given.

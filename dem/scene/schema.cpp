@@ -117,6 +117,10 @@ constexpr Key specimen_keys[] = {
   {.path = "preparation_friction", .field = member<&SpecimenSpec::preparation_friction>, .unit = unit::deg,
    .presence = Presence::optional, .value = "10 deg", .range = right_angle, .reason = because_tan,
    .group = "preparation", .text = "Angle of friction while it is compressed; the density is the result."},
+  {.path = "expansion", .field = member<&SpecimenSpec::expansion>, .value = "0", .range = {0, 0.1},
+   .reason = "because a cloud has no memory of its compaction",
+   .text = "Linear strain by which the compacted packing is opened. Its grains are shaken and it is compressed again "
+           "with the friction of the test: nearly as dense, with fewer contacts. 0: it is not."},
   {.path = "file", .field = member<&SpecimenSpec::file>, .presence = Presence::optional, .value = "specimens/dr64.h5",
    .group = "preparation",
    .text = "A prepared specimen or a snapshot (.h5), or an entry of a library of specimens (\"library.h5#s0007\"). "
@@ -211,6 +215,7 @@ bool is_implied(const Key &key, StructRef scene)
   const std::string_view path = key.path;
   return (path == "specimen.consolidation" && s.specimen.domain == "rigid-box") ||
          (path == "contact.law" && is_default(s.contact)) ||
+         (path == "specimen.expansion" && s.specimen.expansion == 0) ||
          (path.starts_with("control.") && s.stages.empty() && s.control == ControlSpec{}) ||
          (path.starts_with("grading.") && !s.specimen.file.empty() && !s.written.has(path)) ||
          (path == "specimen.pressure" && !takes_pressure(s) && !s.written.has(path) &&

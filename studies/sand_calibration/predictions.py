@@ -9,6 +9,8 @@ import tomllib
 import isostat
 import numpy as np
 
+from studies.sand_calibration import posterior
+from studies.sand_calibration.posterior import number
 from studies.scenes import cyclic, scene_of
 from studies.tables import read_csv
 
@@ -61,16 +63,34 @@ class Fit:
         self.fitted = self.numbers["misfit_best"]
         blind = [curve["best"] for curve in self.numbers["curves"] if curve["blind"]]
         self.blind = float(np.sqrt(np.mean(np.square(blind))))
-        self.frictions = {one["curve"]: float(one["best"].split()[0]) for one in self.numbers["parameters"]
-                          if one["curve"]}
+        self.values = [number(one["best"]) for one in self.numbers["parameters"]]
 
-    def preparation(self, density):
-        """Friction with which specimens of a relative density of the laboratory are prepared, deg: its logarithm is
-        linear between those of the three that were fitted, and beyond them."""
-        at = sorted((densities()[test][0], np.log(self.frictions[group])) for group, test in fitted().items())
-        k = 0 if density < at[1][0] else 1
-        (low, first), (high, last) = at[k:k + 2]
-        return float(np.exp(first + (density - low) / (high - low) * (last - first)))
+    def drawn(self, k):
+        """{key of a scene, or group of specimens: number}: the best set (0), or a draw of the posterior."""
+        values = posterior.fit(self.folder.parent).draw(k) if self.is_opened and k else self.values
+        return dict(zip((one["curve"] or one["key"] for one in self.numbers["parameters"]), map(float, values)))
+
+    @property
+    def is_opened(self):
+        return self.folder.name == "opened"
+
+    def scene(self, k, density):
+        """Sections contact and specimen of a draw, for specimens of a relative density of the laboratory."""
+        values = self.drawn(k)
+        contact = self.contact | {"friction": f"{values['contact.friction']:.6g} deg"}
+        contact["rolling"] = contact["rolling"] | {"limit": values["contact.rolling.limit"]}
+        specimen = {"domain": "periodic-cell",
+                    "preparation_friction": f"{preparation(values, density):.5g} deg"}
+        return contact, specimen | ({"expansion": values["specimen.expansion"]} if self.is_opened else {})
+
+
+def preparation(frictions, density):
+    """Friction with which specimens of a relative density of the laboratory are prepared, deg: its logarithm is linear
+    between those of the three that were fitted, and beyond them.   frictions: {group of specimens: deg}"""
+    at = sorted((densities()[test][0], np.log(frictions[group])) for group, test in fitted().items())
+    k = 0 if density < at[1][0] else 1
+    (low, first), (high, last) = at[k:k + 2]
+    return float(np.exp(first + (density - low) / (high - low) * (last - first)))
 
 
 def fit_of(folder):
@@ -87,7 +107,7 @@ def modulus(results, scene):
 
 @dataclasses.dataclass(frozen=True)
 class Test:
-    """One specimen under one test of the laboratory."""
+    """One specimen under one test of the laboratory, with the best set (the first seed) or a draw of the posterior."""
 
     output: pathlib.Path  # of the study
     contact: str
@@ -106,10 +126,9 @@ class Test:
         fit = fit_of(self.output / self.contact)
         if fit is None:
             return None
-        return isostat.Scene(scene_of(self.name, GRAINS, self.seed, {
-            "domain": "periodic-cell", "pressure": f"{self.pressure:g} kPa",
-            "preparation_friction": f"{fit.preparation(self.density):.5g} deg"},
-            [dict(self.stage)] if self.stage else [], contact=fit.contact, motion=self.motion))
+        contact, specimen = fit.scene(self.seed - FIRST_SEED, self.density)
+        return isostat.Scene(scene_of(self.name, GRAINS, self.seed, specimen | {"pressure": f"{self.pressure:g} kPa"},
+                                      [dict(self.stage)] if self.stage else [], contact=contact, motion=self.motion))
 
     @property
     def motion(self):

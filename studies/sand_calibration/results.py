@@ -10,40 +10,31 @@ from isostat.campaign.calibrate.plan import read_plan
 from isostat.campaign.runs import read_summary
 from isostat.figures.common import legend_below
 from isostat.results import read_table
-from studies.drawing import BLUE, GREEN, GREY, ORANGE, RED, band, panels, plain_logarithm, save
+from studies.drawing import BLUE, GREY, ORANGE, band, panels, plain_logarithm, save
 from studies.ensembles import ensemble
+from studies.sand_calibration import posterior
+from studies.sand_calibration.posterior import PARAMETERS, number
 from studies.sand_calibration.predictions import (LABORATORY, MOST_CYCLES, ONSET, curves, densities, fit_of, fitted,
                                                   limits)
 from studies.small_strain.published import small_strain_modulus
 from studies.tables import read_csv, write_csv
 
-COLOURS = {"linear_rolling": BLUE, "hertz_rolling": ORANGE, "linear": GREEN, "hertz": RED}
+COLOURS = {"compacted": GREY, "opened": ORANGE}
 
 
-def trial_rows(fit):
-    return read_csv(fit.folder / "trials.csv")
-
-
-def good_trials(fit):
-    """Those that these specimens cannot distinguish from the best: M^2 <= M_best^2 + (scatter of fitted curves)^2."""
-    scatter = np.mean([curve["scatter"]**2 for curve in fit.numbers["curves"] if not curve["blind"]])
-    return [row for row in trial_rows(fit) if row["misfit (-)"]**2 <= fit.fitted**2 + scatter]
-
-
-def fit_row(fit, contact):
-    """Best set, range of the good trials, misfits."""
-    row = {"contact": contact, "trials": fit.numbers["trials"], "fitted": fit.fitted, "not fitted": fit.blind}
-    good = good_trials(fit)
-    row |= {"good trials": len(good)}
-    for one in fit.numbers["parameters"]:
-        values = [trial[one["label"]] for trial in good]
-        row |= {one["label"]: float(one["best"].split()[0]), f"{one['label']}, low": min(values),
-                f"{one['label']}, high": max(values)}
-    return row
+def parameter_rows(fit):
+    """Best set, and the posterior with its correlations."""
+    found = posterior.fit(fit.folder.parent)
+    low, median, high = found.band()
+    names = [" ".join(filter(None, (one.get("curve"), one["key"].split(".", 1)[1]))) for one in PARAMETERS]
+    for k, (name, one) in enumerate(zip(names, PARAMETERS)):
+        yield {"parameter": name, "lower bound": number(one["bounds"][0]), "upper bound": number(one["bounds"][1]),
+               "best": fit.values[k], "16 %": low[k], "median": median[k], "84 %": high[k],
+               **{f"correlation with {other}": r for other, r in zip(names, found.correlation()[k])}}
 
 
 def folders_of_fit(fit, curve):
-    best = next(row for row in trial_rows(fit) if row["trial (-)"] == fit.numbers["best"])
+    (best,) = read_csv(fit.folder / "trials.csv")
     return sorted(path for path in (fit.folder / best["folder"]).glob(f"{curve['name']}_seed*") if path.is_dir())
 
 
@@ -192,8 +183,10 @@ def report(store, planned, folder, contacts):
     if not fits:
         return
     compared = {contact: drained_of(store, planned, fit, contact) for contact, fit in fits.items()}
-    write_csv(folder / "fits.csv", [fit_row(fit, contact) for contact, fit in fits.items()])
-    tables = {"drained": [row for contact in fits for row in drained_rows(contact, compared[contact])],
+    write_csv(folder / "fits.csv", [{"packings": contact, "fitted": fit.fitted, "not fitted": fit.blind}
+                                    for contact, fit in fits.items()])
+    tables = {"parameters": list(parameter_rows(fits["opened"])) if "opened" in fits else [],
+              "drained": [row for contact in fits for row in drained_rows(contact, compared[contact])],
               "small_strain": list(small_strain_rows(store, planned)),
               "undrained": list(undrained_rows(store, planned)), "cyclic": list(cyclic_rows(store, planned))}
     for name, rows in tables.items():

@@ -19,15 +19,31 @@ class Densities(ToleranceTest):
                              "percent with one decimal")
 
     def test_preparation_friction_follows_the_fitted_ones(self):
-        fit = object.__new__(PREDICTIONS.Fit)
-        fit.frictions = {"loose": 24.0, "medium": 12.0, "dense": 3.0}
+        frictions = {"loose": 24.0, "medium": 12.0, "dense": 3.0}
         of = {group: PREDICTIONS.densities()[test][0] for group, test in PREDICTIONS.fitted().items()}
-        for group, friction in fit.frictions.items():
-            self.assert_close(fit.preparation(of[group]), friction, 1e-12, "rounding")
-        between = fit.preparation((of["medium"] + of["dense"]) / 2)
+        for group, friction in frictions.items():
+            self.assert_close(PREDICTIONS.preparation(frictions, of[group]), friction, 1e-12, "rounding")
+        between = PREDICTIONS.preparation(frictions, (of["medium"] + of["dense"]) / 2)
         self.assert_close(between, 6, 1e-12, "geometric mean, rounding")
-        beyond = fit.preparation(2 * of["dense"] - of["medium"])
+        beyond = PREDICTIONS.preparation(frictions, 2 * of["dense"] - of["medium"])
         self.assert_close(beyond, 0.75, 1e-12, "a quarter again, rounding")
+
+
+class Posterior(ToleranceTest):
+    def test_of_linear_curves_finds_parameters_and_width(self):
+        random = np.random.default_rng(2)
+        places, truth = random.random((40, 6)), np.array([0.5, 0.4, 0.6, 0.5, 0.5, 0.5])
+        concerned = {name: [0, 1, 2, 3 + k] for k, name in enumerate(("loose", "medium", "dense"))}
+        slope = {name: random.standard_normal((4, 60)) for name in concerned}
+        curves = {name: places[:, on] @ slope[name] + 0.1 * random.standard_normal((40, 60))
+                  for name, on in concerned.items()}
+        laboratory = {name: truth[on] @ slope[name] for name, on in concerned.items()}
+        found, shares = OF.posterior.posterior(places, curves, laboratory, concerned), OF.posterior.shares
+        self.assert_near(np.abs(shares(found.best) - truth).max(), 0, 0.03, "0.1 over the root of a trial's 60 values")
+        self.assert_close(found.missed, 0.1, 0.1, "noise of the trial left out; 40 trials for five numbers")
+        self.assert_close(found.expected**2, found.misfit**2 + found.missed**2 * 5 / 40, 1e-12, "rounding")
+        width = np.std([shares(sample)[5] for sample in found.samples])
+        self.assert_close(width, found.expected / 2**0.5, 0.25, "nearly orthogonal slopes, mean square 1 / 3")
 
 
 class Measures(ToleranceTest):

@@ -145,6 +145,27 @@ TEST(Compaction, OfALawWithoutFrictionHasNone)
   EXPECT_NE(with_angle.grains.position, compact(cloud, test::paper_law(), 0.2, {{}, nobody}).grains.position);
 }
 
+/// Agnolin and Roux (2007), preparation C: the density of a lubricated packing, and a coordination number far below it.
+TEST(Compaction, OpenedPackingsAreAsDenseWithFewerContacts)
+{
+  const Cloud cloud = make_cloud(test::small_grading(400));
+  test::Unobserved nobody;
+  SpecimenSpec spec;
+  spec.domain = "periodic-cell";
+  const auto ratio = [](const Snapshot &s) { return void_ratio(s.volume(), s.grains.solid_volume()); };
+  const Snapshot closed = compact(cloud, test::paper_law(), 0.05, {spec, nobody});
+  spec.expansion = 0.01;
+  const Snapshot opened = compact(cloud, test::paper_law(), 0.05, {spec, nobody});
+  expect_same_bits(opened, compact(cloud, test::paper_law(), 0.05, {spec, nobody, 2}));
+  EXPECT_EQ(opened.law->friction, test::paper_law().friction);
+  EXPECT_NEAR_BECAUSE(ratio(opened), ratio(closed), 0.02, "the friction of the test stops it half of the 0.05 short");
+  EXPECT_BELOW_BECAUSE(static_cast<double>(opened.contacts.size()) / static_cast<double>(closed.contacts.size()), 0.85,
+                       "4.5 or less contacts of a grain in place of nearly 6");
+  const double aim = ratio(opened) + 0.05, tolerance = 0.005;
+  EXPECT_NEAR_BECAUSE(ratio(find_preparation_friction(cloud, test::paper_law(), aim, tolerance, {spec, nobody}).state),
+                      aim, tolerance, "the search sees the density after the second compression");
+}
+
 TEST(RelativeDensity, IsFoundWithinTheTolerance)
 {
   const Cloud cloud = make_cloud(test::small_grading(400));

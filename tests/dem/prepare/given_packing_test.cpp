@@ -2,6 +2,7 @@
 #include "dem/prepare/given_packing.hpp"
 
 #include "base/error.hpp"
+#include "dem/prepare/specimen.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gmock/gmock.h>
@@ -176,12 +177,22 @@ TEST(GivenPacking, SceneIsWrittenWithoutDefaultsOfWhatThePackingHas)
 
 TEST(GivenPacking, NothingRemainsOfItsPreparation)
 {
-  const Scene k0 = scene("", usual, "relative_density = 0.5\nconsolidation = \"k0\"");
+  const Scene k0 = scene("", usual, "relative_density = 0.5\nexpansion = 0.02\nconsolidation = \"k0\"");
   const SpecimenSpec given = without_preparation(k0.specimen);
   EXPECT_EQ(given.consolidation, "isotropic") << "else no scene with its file could be read";
-  EXPECT_FALSE(given.relative_density || given.has_limits());
+  EXPECT_FALSE(given.relative_density || given.has_limits() || given.expansion > 0);
   const SpecimenSpec own = without_preparation(scene("", usual, "void_ratio = 0.7\ne_min = 0.5\ne_max = 0.8").specimen);
   EXPECT_FALSE(own.void_ratio);
   EXPECT_TRUE(own.has_limits());
+}
+
+TEST(Recipe, NamesAnExpansionButNoneThatIsNot)
+{
+  const std::string plain = specimen_recipe(scene("", usual, "relative_density = 0.5")),
+                    none = specimen_recipe(scene("", usual, "relative_density = 0.5\nexpansion = 0")),
+                    opened = specimen_recipe(scene("", usual, "relative_density = 0.5\nexpansion = 0.02"));
+  EXPECT_EQ(none, plain) << "specimens of older caches stay";
+  EXPECT_NE(opened, plain);
+  EXPECT_EQ(parse_scene(opened, "recipe").specimen.expansion, 0.02);
 }
 } // namespace isostat

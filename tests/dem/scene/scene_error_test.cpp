@@ -240,6 +240,7 @@ TEST(SceneError, KeysThatExcludeEachOther)
   expect_complaint(smallest + "e_min = 0.9", {"scene.toml:3: specimen.e_min = 0.9; e_min must be below e_max"});
   expect_complaint(smallest + "[[stage]]\nkind = \"friction\"\nfriction = \"18 deg\"",
                    {"stage.0.friction", "has no effect"});
+  expect_complaint("[specimen]\nexpansion = 0.2", {"scene.toml:2", "specimen.expansion = 0.2", "in [0, 0.1]"});
   expect_complaint("[specimen]\nfile = \"\"", {"specimen.file", "must name a file"});
   for (const std::string file : {"packing.txt", "tests/n1000", "a.h5.csv", "a.csv#s0001"})
     expect_complaint("[specimen]\nfile = \"" + file + "\"",
