@@ -42,6 +42,18 @@ constexpr Key in_mesh[] = {
            "every layer is thinner in proportion."},
 };
 
+constexpr Key in_refine[] = {
+  {.path = "from", .field = member<&ColumnRefinement::from>, .unit = unit::m, .presence = Presence::optional,
+   .value = "[\"4 m\", \"6 m\"]",
+   .text = "x (of a block x, y) and height above the base where it begins; left out: at the ends of the soil."},
+  {.path = "to", .field = member<&ColumnRefinement::to>, .unit = unit::m, .presence = Presence::optional,
+   .value = "[\"8 m\", \"10 m\"]", .text = "Where it ends, likewise; above `from`."},
+  {.path = "levels", .field = member<&ColumnRefinement::levels>, .value = "1", .range = {1, 8},
+   .reason = "because elements of a 256th are small enough",
+   .text = "How often elements whose centre is in the box are halved. Neighbours are halved, too, until elements that "
+           "meet at a corner differ by one level."},
+};
+
 constexpr Key in_load[] = {
   {.path = "surcharge_from", .field = member<&ColumnLoad::surcharge_from>, .unit = unit::m,
    .presence = Presence::optional, .value = "8 m", .range = not_negative,
@@ -171,6 +183,32 @@ void check_free_fields(const SceneDocument &document, const ColumnScene &scene)
       }
 }
 
+void check_refinement(const SceneDocument &document, const ColumnScene &scene)
+{
+  const unsigned dimension = scene.mesh.dimension;
+  if (scene.refine.empty())
+    return;
+  if (dimension == 1)
+    document.refuse("refine", "needs mesh.dimension 2 or 3; elements of a column are those of its layers. Give cells.");
+  if (scene.analysis.kind == AnalysisKind::biaxial)
+    document.refuse("refine", "has no place in a biaxial block, whose elements are alike. Remove it.");
+  if (dimension == 3 && !scene.load.bears_on_all())
+    document.refuse("refine", "needs a surcharge on all of the surface in 3 dimensions. Remove load.surcharge_from and "
+                              "surcharge_to.");
+  for (std::size_t k = 0; k < scene.refine.size(); ++k)
+    {
+      const auto &[from, to, levels] = scene.refine[k];
+      for (const auto &[key, place] : {std::pair{"from", &from}, std::pair{"to", &to}})
+        if (!place->empty() && place->size() != dimension)
+          document.refuse(fmt::format("refine.{}.{}", k, key),
+                          fmt::format("must have {} lengths: {} and height above the base.", dimension,
+                                      dimension == 2 ? "x" : "x, y"));
+      for (unsigned d = 0; d < dimension && !from.empty() && !to.empty(); ++d)
+        if (!(from[d] < to[d]))
+          document.refuse(fmt::format("refine.{}.to", k), "must be above refine.from along each axis.");
+    }
+}
+
 void check_places(const SceneDocument &document, const ColumnScene &scene)
 {
   const ColumnLoad &load = scene.load;
@@ -199,6 +237,8 @@ void check_places(const SceneDocument &document, const ColumnScene &scene)
 
 SceneFragment<ColumnMesh> box_keys() { return {in_mesh}; }
 
+SceneFragment<ColumnRefinement> refinement_keys() { return {in_refine}; }
+
 SceneFragment<ColumnLoad> strip_load_keys() { return {in_load}; }
 
 void check_box(const SceneDocument &document, const ColumnScene &scene)
@@ -207,6 +247,7 @@ void check_box(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("mesh.points", fmt::format("must be 0 or at least the degree, {}, or elements have modes without "
                                                "stiffness.",
                                                scene.mesh.degree));
+  check_refinement(document, scene);
   if (scene.mesh.sides == Sides::tied)
     return refuse_box_keys(document);
   refuse_around_box(document, scene);

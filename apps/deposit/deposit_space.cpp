@@ -66,12 +66,43 @@ MeshSpec cut_mesh(const ColumnScene &scene, const UserMaterials &user)
   return mesh;
 }
 
+/// Cells at a side of a box whose elements are refined, from the surface down.
+std::vector<GivenMesh::Length> cells_at(MeshSpec box, double x)
+{
+  box.degree = 1;
+  const Discretisation<2> block(box, {});
+  std::vector<GivenMesh::Length> lengths;
+  for (std::size_t cell = 0; cell < block.n_cells(); ++cell)
+    {
+      std::vector<double> ends;
+      for (std::size_t k = 4 * cell; k < 4 * cell + 4; ++k)
+        if (std::abs(block.corner[k][0] - x) < 1e-9 * box.width[0])
+          ends.push_back(block.corner[k][2]);
+      if (ends.size() == 2)
+        lengths.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1]), block.cell_layer[cell]});
+    }
+  std::ranges::sort(lengths, std::greater(), &GivenMesh::Length::high);
+  return lengths;
+}
+
 /// The ground of a box at x, and the numbers that its layers have in the scene.
 std::pair<MeshSpec, std::vector<unsigned>> column_at(const ColumnScene &scene, double x)
 {
   const MeshSpec box = mesh_spec(scene);
   MeshSpec column{.soil = box.soil, .degree = box.degree, .points_per_direction = box.gauss_points(2)};
   std::vector<unsigned> numbers;
+  if (!box.refine.empty())
+    {
+      column.soil.layers.clear();
+      for (const auto &[low, high, layer] : cells_at(box, x))
+        {
+          column.soil.layers.push_back(box.soil.layers[layer]);
+          column.soil.layers.back().thickness = high - low;
+          column.soil.layers.back().cells = 1;
+          numbers.push_back(layer);
+        }
+      return {column, numbers};
+    }
   if (box.given)
     {
       column.soil = box.given->borehole(box.soil, x);

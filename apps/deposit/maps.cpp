@@ -17,20 +17,20 @@ std::vector<double> depths(const FiniteElementSpace &space)
   return all;
 }
 
-/// f(corner of the mesh, its node's first displacement unknown) for all corners of all elements.
+/// f(element, its corner) for all corners of all elements.
 template <typename F>
 void for_each_corner(const FiniteElementSpace &space, const F &f)
 {
   for (std::size_t cell = 0; cell < space.n_cells(); ++cell)
     for (std::size_t corner : anticlockwise)
-      f(4 * cell + corner, space.cell_dofs[3 * (cell * space.n_nodes + corner)]);
+      f(cell, corner);
 }
 
 SeriesLayout layout_of(const FiniteElementSpace &space, std::span<const double> vertical_stress,
                        std::span<const double> velocities, bool packings)
 {
   std::vector<Place> corners;
-  for_each_corner(space, [&](std::size_t corner, unsigned) { corners.push_back(space.corner[corner]); });
+  for_each_corner(space, [&](std::size_t cell, std::size_t k) { corners.push_back(space.corner[4 * cell + k]); });
   SeriesLayout layout = profile_layout(depths(space), {vertical_stress.begin(), vertical_stress.end()},
                                        {velocities.begin(), velocities.end()});
   for (const char *name : {"displacement_x", "displacement_y", "displacement_z"})
@@ -59,7 +59,9 @@ void BoxMaps::append(const ColumnInstant &instant, std::span<const double> redun
 {
   std::vector<double> values = columns_at(instant, points_, vertical_stress_);
   for (unsigned axis : {0, 1, 2})
-    for_each_corner(space_, [&](std::size_t, unsigned dof) { values.push_back(instant.displacement[dof + axis]); });
+    for_each_corner(space_, [&](std::size_t cell, std::size_t corner) {
+      values.push_back(space_.at_node(instant.displacement, cell, corner, axis));
+    });
   for (const Stress &stress : instant.stresses)
     values.push_back(-stress[0]);
   values.insert(values.end(), redundancy.begin(), redundancy.end());

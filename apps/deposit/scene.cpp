@@ -253,6 +253,17 @@ MeshSpec mesh_spec(const ColumnScene &scene)
   mesh.points_per_direction = scene.mesh.points;
   mesh.ground = ground_line(scene.mesh);
   mesh.given = scene.mesh.given;
+  for (const ColumnRefinement &box : scene.refine)
+    {
+      Refinement &to = mesh.refine.emplace_back();
+      to.levels = box.levels;
+      for (unsigned d = 0; d < scene.mesh.dimension; ++d)
+        {
+          const int axis = mesh_axes[scene.mesh.dimension][d];
+          to.from[axis] = box.from.empty() ? std::numeric_limits<double>::lowest() : box.from[d];
+          to.to[axis] = box.to.empty() ? std::numeric_limits<double>::max() : box.to[d];
+        }
+    }
   if (mesh.given && scene.mesh.dimension == 3)
     mesh.width[1] = mesh.given->width(1);
   const double part = scene.mesh.sides != Sides::tied ? 0.5 : 0; // of the widths

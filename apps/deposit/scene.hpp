@@ -53,6 +53,15 @@ struct ColumnMesh
   bool operator==(const ColumnMesh &) const = default;
 };
 
+/// A part of the mesh whose elements are halved: Refinement.
+struct ColumnRefinement
+{
+  std::vector<double> from, to; ///< x, in 3D y, and z above the base, m; empty: to the ends of the soil
+  unsigned levels = 1;
+
+  bool operator==(const ColumnRefinement &) const = default;
+};
+
 struct ColumnWater : Water
 {
   Drainage drainage = Drainage::coupled;
@@ -243,6 +252,7 @@ struct ColumnScene
 {
   std::string title;
   ColumnMesh mesh;
+  std::vector<ColumnRefinement> refine;
   ColumnWater water;
   Slope slope;
   std::vector<ColumnLayer> layers; ///< from the surface down

@@ -38,6 +38,11 @@ constexpr unsigned consolidation = kind_bit(AnalysisKind::consolidation);
 // clang-format off
 constexpr Section sections[] = {
   {.name = "mesh", .text = "Elements of the soil. In every dimension the displacement has three components."},
+  {.name = "refine",
+   .text = "Elements that are smaller in a box, in 2 and 3 dimensions, not of a biaxial block: each `[[refine]]` halves "
+           "those in it along all axes. With tied sides opposite ones are halved alike. docs/column.md.",
+   .items = items_of<&ColumnScene::refine>, .empty_remedy = "Leave it out if no element is halved.",
+   .set_example = "levels=2"},
   {.name = "water", .text = "Pore water. The water table, at the surface unless `table` says otherwise, drains freely."},
   {.name = "slope",
    .text = "The ground as an infinite slope. All axes turn with it: x points down the slope, depths are normal to the "
@@ -316,6 +321,7 @@ const SceneSchema &column_schema()
   static const KeyTable keys{title_key,
                              splice<&ColumnScene::mesh>("mesh", mesh_keys),
                              splice<&ColumnScene::mesh>("mesh", box_keys()),
+                             KeyRun(refinement_keys().keys, "refine"),
                              splice<&ColumnScene::water>("water", water_keys),
                              splice<&ColumnScene::water>("water", pore_fluid_keys()),
                              splice<&ColumnScene::slope>("slope", slope_keys()),

@@ -3,6 +3,7 @@
 
 #include "apps/common/summary.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace isostat
@@ -76,10 +77,10 @@ std::array<double, 2> PlateForces::forces(const Statics &run) const
 double PlateForces::pressure(std::span<const Stress> stresses) const
 {
   double sum = 0, weight = 0;
-  for (std::size_t q : points_)
+  for (std::size_t k = 0; k < points_.size(); ++k)
     {
-      sum -= space_.weight[q] * stresses[q][plate_.axis()];
-      weight += space_.weight[q];
+      sum -= areas_[k] * stresses[points_[k]][plate_.axis()];
+      weight += areas_[k];
     }
   return sum / weight;
 }
@@ -99,19 +100,31 @@ double PlateForces::distance(const Place &place) const
     }
 }
 
-/// Of the elements at the plate the row of points that is nearest to it.
+/// Of the elements at the plate the row of points that is nearest to it, of refined ones that of each.
 void PlateForces::find_points()
 {
   const auto beside = [&](std::size_t q) {
     const double along = space_.position[q][2 - plate_.axis()];
     return along > patch_.from && along < patch_.to;
   };
-  double nearest = std::numeric_limits<double>::max();
-  for (std::size_t q = 0; q < space_.n_points(); ++q)
-    if (beside(q))
-      nearest = std::min(nearest, distance(space_.position[q]));
-  for (std::size_t q = 0; q < space_.n_points(); ++q)
-    if (beside(q) && distance(space_.position[q]) < 1.5 * nearest)
-      points_.push_back(q);
+  const bool refined = !space_.mesh().refine.empty();
+  const std::size_t n = refined ? space_.n_gauss : space_.n_points(), n_corners = space_.pressure_nodes_per_cell();
+  for (std::size_t first = 0; first < space_.n_points(); first += n)
+    {
+      const Place *corners = &space_.corner[first / space_.n_gauss * n_corners];
+      if (refined && std::none_of(corners, corners + n_corners,
+                                  [this](const Place &at) { return distance(at) < 1e-9 * space_.mesh().width[0]; }))
+        continue;
+      double nearest = std::numeric_limits<double>::max();
+      for (std::size_t q = first; q < first + n; ++q)
+        if (beside(q))
+          nearest = std::min(nearest, distance(space_.position[q]));
+      for (std::size_t q = first; q < first + n; ++q)
+        if (beside(q) && distance(space_.position[q]) < 1.5 * nearest)
+          {
+            points_.push_back(q);
+            areas_.push_back(space_.weight[q] / (refined ? nearest : 1));
+          }
+    }
 }
 } // namespace isostat

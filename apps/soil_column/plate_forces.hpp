@@ -63,6 +63,7 @@ private:
   const FiniteElementSpace &space_;
   Vector area_;
   std::vector<std::size_t> points_;
+  std::vector<double> areas_; ///< of the plate that belong to them, up to a factor
   double length_ = 0;
   std::array<double, 3> start_ = {}; ///< of the plate on the soil in situ, N/m
 };

@@ -194,7 +194,7 @@ std::string default_array(const SceneSchema &schema, const Section &section)
 {
   const Key *kind_key = schema.kind_key(section);
   if (!kind_key)
-    return default_table(schema, section, 0);
+    return section.needed ? default_table(schema, section, 0) : commented(default_table(schema, section, 0));
   const auto shown = [&](std::size_t i) { return std::string_view(kind_key->choices[i]) == section.default_kind; };
   std::string text;
   for (std::size_t i = 0; i < kind_key->choices.size(); ++i)

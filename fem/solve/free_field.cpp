@@ -52,11 +52,11 @@ void FreeField::integrate(const Value &value, Vector &sums) const
   for (std::size_t q = 0; q < space_->n_points(); ++q)
     for (std::size_t c = 0; c < 3; ++c)
       {
-        const std::size_t cell = q / space_->n_gauss, gauss = q % space_->n_gauss;
+        const std::size_t cell = q / space_->n_gauss;
         const double at_point = space_->weight[q] * value(q, c);
         for (std::size_t a = 0; a < space_->n_nodes; ++a)
           sums.local_element(space_->cell_dofs[(cell * space_->n_nodes + a) * 3 + c]) +=
-              at_point * space_->shape[gauss * space_->n_nodes + a];
+              at_point * space_->shapes(q)[a];
       }
 }
 

@@ -33,6 +33,13 @@ struct FinePlane
   double size = 0;   ///< of the cells at the plane, m; infinite: none is halved for it
 };
 
+/// A box within which cells are halved along all axes.
+struct Refinement
+{
+  Place from, to;      ///< cells whose centre is between them; an axis that is not meshed does not count, m
+  unsigned levels = 1; ///< how often; neighbours follow as far as cells that meet at a corner differ by one level
+};
+
 /// A block of soil of layers, `dim` of the axes x, y, z meshed: 1 z; 2 x, z; 3 x, y, z. Its cells are rectangles below
 /// the ground, or those of a mesh that is given.
 /// tested: tests/fem/space/discretisation_test.cpp
@@ -49,6 +56,7 @@ struct MeshSpec
   /// surface.
   std::shared_ptr<const GivenMesh> given = {};
   std::vector<FinePlane> fine = {};
+  std::vector<Refinement> refine = {}; ///< in 2D and 3D; nodes hang where cells of two levels meet: CellNodes
   std::vector<Patch> patches = {};     ///< in 2D only; of two that overlap the first has what both claim
   std::array<double, 2> line = {0, 0}; ///< x and y of the vertical along which results are given by depth, m
 

@@ -9,12 +9,18 @@ namespace isostat
 {
 namespace
 {
+/// Nodal volumes of a cell.
+const double *shares(const CellTables &t, std::size_t cell)
+{
+  return &(t.bound_share.empty() ? t.nodal_share : t.bound_share)[cell * t.n_nodes];
+}
+
 /// Stiffness of a skeleton with rho V_p^2 = 1 Pa and rho V_s^2 = shear Pa for one cell, divided by its nodal volumes on
 /// both sides (square roots): its eigenvalues are omega^2 at a density of 1 kg/m3.
 Eigen::MatrixXd scaled_stiffness(const CellTables &t, const CellGeometry &at, std::size_t cell, double shear)
 {
   const std::size_t n_nodes = t.n_nodes, n = 3 * n_nodes, dim = t.dimension;
-  const double *share = &t.nodal_share[cell * n_nodes];
+  const double *share = shares(t, cell);
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
   const double lambda = 1 - 2 * shear;
   for (std::size_t q = cell * t.n_gauss; q < (cell + 1) * t.n_gauss; ++q)
@@ -52,6 +58,10 @@ bool have_same_shape(const CellTables &t, const CellGeometry &at, std::size_t on
 {
   const std::size_t per_cell = t.n_gauss * t.n_nodes * t.dimension;
   const double *a = &at.gradient[one * per_cell], *b = &at.gradient[other * per_cell];
+  const double *v = shares(t, one), *w = shares(t, other);
+  if (!t.bound_share.empty() &&
+      !std::equal(v, v + t.n_nodes, w, [&](double x, double y) { return std::abs(x - y) < 1e-9 * std::abs(*v); }))
+    return false;
   return std::equal(a, a + per_cell, b, [&](double x, double y) { return std::abs(x - y) < 1e-9 * std::abs(*a); });
 }
 } // namespace

@@ -18,7 +18,7 @@ double minimum(double x, MPI_Comm communicator)
   return x;
 }
 
-/// Of a mesh that is given, from the surface down: the points nearest to the middles between nodes.
+/// Of a mesh that is given or refined, from the surface down: the points nearest to the middles between nodes.
 std::vector<std::size_t> points_between(const FiniteElementSpace &space, const std::vector<double> &depths)
 {
   const MeshSpec &mesh = space.mesh();
@@ -117,7 +117,8 @@ ColumnLine column_line(const FiniteElementSpace &space)
   const MeshSpec &mesh = space.mesh();
   ColumnLine line;
   line.node_depths = node_depths(mesh);
-  for (std::size_t q : mesh.given ? points_between(space, line.node_depths) : points_on_line(space))
+  for (std::size_t q :
+       mesh.given || !mesh.refine.empty() ? points_between(space, line.node_depths) : points_on_line(space))
     {
       line.points.push_back(q);
       line.point_depths.push_back(mesh.depth(space.position[q]));

@@ -41,9 +41,9 @@ unsigned number_of(Face face, const char *whose)
   return static_cast<unsigned>(id);
 }
 
-/// Nodes on a face that this rank's own cells have, cell by cell.
+/// Nodes on a face that this rank's own cells have, cell by cell; of those that hang what they hang on.
 template <int dim>
-std::vector<Index> nodes_on_face(const dealii::DoFHandler<dim> &nodes, Face face)
+std::vector<Index> nodes_on_face(const dealii::DoFHandler<dim> &nodes, const HangingNodes<dim> &hanging, Face face)
 {
   const unsigned id = number_of<dim>(face, "supports");
   std::vector<Index> on_face(nodes.get_fe().n_dofs_per_face()), all;
@@ -53,7 +53,8 @@ std::vector<Index> nodes_on_face(const dealii::DoFHandler<dim> &nodes, Face face
         if (f->at_boundary() && f->boundary_id() == id)
           {
             f->get_dof_indices(on_face);
-            all.insert(all.end(), on_face.begin(), on_face.end());
+            for (Index node : on_face)
+              hanging.for_each_master(node, [&](Index master) { all.push_back(master); });
           }
   return all;
 }
@@ -74,9 +75,10 @@ void for_each_node(const dealii::DoFHandler<dim> &nodes, const F &f)
       }
 }
 
-/// The owned node nearest to a place, `nowhere` on the ranks that do not have the nearest of all.
+/// The owned node nearest to a place that does not hang, `nowhere` on the ranks that do not have the nearest of all.
 template <int dim>
-Index nearest_node(const dealii::DoFHandler<dim> &nodes, const Place &place, MPI_Comm communicator)
+Index nearest_node(const dealii::DoFHandler<dim> &nodes, const HangingNodes<dim> &hanging, const Place &place,
+                   MPI_Comm communicator)
 {
   struct
   {
@@ -89,7 +91,7 @@ Index nearest_node(const dealii::DoFHandler<dim> &nodes, const Place &place, MPI
     double distance = 0;
     for (int d = 0; d < dim; ++d)
       distance += std::pow(at[mesh_axes[dim][d]] - place[mesh_axes[dim][d]], 2);
-    if (distance < best.distance && nodes.locally_owned_dofs().is_element(node))
+    if (distance < best.distance && nodes.locally_owned_dofs().is_element(node) && !hanging.hangs(node))
       {
         best.distance = distance;
         nearest = node;
@@ -138,17 +140,21 @@ Discretisation<dim>::Discretisation(const MeshSpec &mesh, const Supports &suppor
   pressures_ = unknowns_->pressures();
   static_cast<CellTables &>(*this) = make_tables(mesh_, *unknowns_);
   for (const FaceComponent &support : supports_.fixed)
-    for (Index node : nodes_on_face(unknowns_->nodes(), support.face))
+    for (Index node : nodes_on_face(unknowns_->nodes(), unknowns_->hanging(), support.face))
       fixed_dofs.push_back(unknowns_->dof_of_node(node, support.component));
   for (Face face : supports_.drained)
-    for (Index node : nodes_on_face(unknowns_->pressure_nodes(), face))
+    for (Index node : nodes_on_face(unknowns_->pressure_nodes(), unknowns_->hanging_pressures(), face))
       drained_pressures.push_back(unknowns_->pressure_of_node(node));
   if (mesh_.soil.water_table > 0)
-    for (std::size_t k = 0; k < corner.size(); ++k)
-      if (!mesh_.soil.is_wet(corner[k][2] * (1 + 1e-9))) // at the table, whatever the rounding
-        drained_pressures.push_back(cell_pressures[k]);
+    for_each_node(unknowns_->pressure_nodes(), [&](Index node, const Place &at) {
+      if (!mesh_.soil.is_wet(at[2] * (1 + 1e-9)) && // at the table, whatever the rounding
+          !unknowns_->hanging_pressures().hangs(node))
+        drained_pressures.push_back(unknowns_->pressure_of_node(node));
+    });
   sort_unique(fixed_dofs);
   sort_unique(drained_pressures);
+  if (!mesh_.refine.empty())
+    share_out_masses();
   cell_frequency_ = frequencies(*this);
 }
 
@@ -158,14 +164,14 @@ Discretisation<dim>::~Discretisation() = default;
 template <int dim>
 long Discretisation<dim>::find_dof(const Place &place, unsigned component) const
 {
-  const Index node = nearest_node(unknowns_->nodes(), place, communicator_);
+  const Index node = nearest_node(unknowns_->nodes(), unknowns_->hanging(), place, communicator_);
   return node == nowhere ? -1 : static_cast<long>(unknowns_->dof_of_node(node, component));
 }
 
 template <int dim>
 long Discretisation<dim>::find_pressure(const Place &place) const
 {
-  const Index node = nearest_node(unknowns_->pressure_nodes(), place, communicator_);
+  const Index node = nearest_node(unknowns_->pressure_nodes(), unknowns_->hanging_pressures(), place, communicator_);
   return node == nowhere ? -1 : static_cast<long>(unknowns_->pressure_of_node(node));
 }
 
@@ -175,8 +181,9 @@ std::vector<Place> Discretisation<dim>::node_places() const
   std::vector<Place> places(displacement_vector().locally_owned_size());
   for_each_node(unknowns_->nodes(), [&](Index node, const Place &at) {
     for (unsigned c = 0; c < 3; ++c)
-      if (const unsigned i = unknowns_->dof_of_node(node, c); i < places.size() && !unknowns_->is_removed(node, c))
-        places[i] = at;
+      if (!unknowns_->is_removed(node, c))
+        if (const unsigned i = unknowns_->dof_of_node(node, c); i < places.size())
+          places[i] = at;
   });
   return places;
 }
@@ -189,18 +196,20 @@ Vector Discretisation<dim>::face_area(Face face) const
   const auto &element = unknowns_->nodes().get_fe();
   Vector area = displacement_vector();
   FEFaceValues<dim> values(element, nodal_quadrature<dim>(element.degree), update_values | update_JxW_values);
-  std::vector<Index> node(element.n_dofs_per_cell());
   for (const auto &cell : unknowns_->nodes().active_cell_iterators())
     if (cell->is_locally_owned())
       for (const unsigned f : cell->face_indices())
         if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == id)
           {
             values.reinit(cell, f);
-            cell->get_dof_indices(node);
+            const auto [node, weights] = unknowns_->hanging().of_cell(cell);
             for (std::size_t a = 0; a < node.size(); ++a)
               for (unsigned q = 0; q < values.n_quadrature_points; ++q)
-                for (unsigned c = 0; c < 3; ++c)
-                  area.local_element(unknowns_->dof_of_node(node[a], c)) += values.shape_value(a, q) * values.JxW(q);
+                for (std::size_t b = 0; b < node.size(); ++b)
+                  if (const double weight = weights.empty() ? a == b : weights[a * node.size() + b]; weight != 0)
+                    for (unsigned c = 0; c < 3; ++c)
+                      area.local_element(unknowns_->dof_of_node(node[b], c)) +=
+                          weight * values.shape_value(a, q) * values.JxW(q);
           }
   area.add_ghosts_to_owners();
   return area;

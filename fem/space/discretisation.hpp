@@ -82,6 +82,9 @@ public:
 protected:
   FiniteElementSpace(const MeshSpec &mesh, const Supports &supports, int dim, MPI_Comm communicator);
 
+  /// Finds bound_share. @throws InputError  a mass is not positive
+  void share_out_masses();
+
   MeshSpec mesh_;
   Supports supports_;
   bool shared_out_;
@@ -98,6 +101,7 @@ class Unknowns;
 ///
 ///     block.hpp          what is requested: layers, widths, supports
 ///     mesh.hpp           cells                                                    (deal.II)
+///     hanging_nodes.hpp  nodes on coarser neighbours                              (deal.II)
 ///     unknowns.hpp       nodes, ties, numbers of unknowns                         (deal.II)
 ///     discretisation.cpp where unknowns are                                       (deal.II)
 ///     tables.hpp         the cells as flat tables                                 (made by deal.II, then free of it)

@@ -152,6 +152,33 @@ Vector FiniteElementSpace::lumped_mass() const
   return mass;
 }
 
+/// |m_eA| of a cell, times m_A / sum_e |m_eA|: together they are the mass of an unknown, part by part positive.
+void FiniteElementSpace::share_out_masses()
+{
+  Vector absolute = displacement_vector(), part = lumped_mass();
+  const auto mass = [this](std::size_t k) {
+    return mesh_.soil.layers[cell_layer[k / n_nodes]].density * std::abs(nodal_share[k]);
+  };
+  for (std::size_t k = 0; k < nodal_share.size(); ++k)
+    for (unsigned c = 0; c < 3; ++c)
+      absolute.local_element(cell_dofs[3 * k + c]) += mass(k);
+  absolute.add_ghosts_to_owners();
+  for (std::size_t i = 0; i < part.locally_owned_size(); ++i)
+    if (absolute.local_element(i) > 0)
+      part.local_element(i) /= absolute.local_element(i);
+  part.update_ghost_values();
+  for (std::size_t k = 0; k < nodal_share.size(); ++k)
+    {
+      const unsigned *i = &cell_dofs[3 * k];
+      bound_share.push_back(std::abs(nodal_share[k]) *
+                            std::min({part.local_element(i[0]), part.local_element(i[1]), part.local_element(i[2])}));
+      if (!(bound_share.back() > 0))
+        throw InputError(
+            "refine: a node between elements of two sizes has no positive mass; let layers of densities as "
+            "different as that end elsewhere");
+    }
+}
+
 std::vector<Vector> FiniteElementSpace::layer_volumes() const
 {
   std::vector<Vector> volumes(mesh_.soil.layers.size(), displacement_vector());
@@ -173,7 +200,7 @@ std::vector<double> FiniteElementSpace::point_pressures(const Vector &p) const
   const std::size_t n_i = pressure_nodes_per_cell();
   for (std::size_t q = 0; q < pressure.size(); ++q)
     for (std::size_t i = 0; cell_is_wet[q / n_gauss] && i < n_i; ++i)
-      pressure[q] += pressure_shape[q % n_gauss * n_i + i] * whole.local_element(cell_pressures[q / n_gauss * n_i + i]);
+      pressure[q] += pressure_shapes(q)[i] * whole.local_element(cell_pressures[q / n_gauss * n_i + i]);
   return pressure;
 }
 

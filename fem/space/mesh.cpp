@@ -7,8 +7,10 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace isostat
 {
@@ -184,17 +186,99 @@ void cut_patch(const MeshSpec &spec, std::size_t k, dealii::Triangulation<dim> &
 
 /// The mesh, each rank with a part of it.
 template <int dim>
-std::unique_ptr<dealii::Triangulation<dim>> shared(std::unique_ptr<dealii::Triangulation<dim>> whole,
-                                                   MPI_Comm communicator)
+std::unique_ptr<dealii::Triangulation<dim>> shared(const dealii::Triangulation<dim> &whole, MPI_Comm communicator)
 {
-  if constexpr (dim == 1)
-    return whole;
-  else
+  auto mesh =
+      std::make_unique<dealii::parallel::distributed::Triangulation<dim>>(communicator, whole.get_mesh_smoothing());
+  mesh->copy_triangulation(whole);
+  return mesh;
+}
+
+template <int dim>
+bool lies_in(const Refinement &box, const dealii::Point<dim> &point)
+{
+  const Place place = place_of<dim>(point);
+  return std::ranges::all_of(mesh_axes[dim],
+                             [&](int axis) { return place[axis] > box.from[axis] && place[axis] < box.to[axis]; });
+}
+
+/// The same for any number of ranks.
+template <int dim>
+void halve_cells(const MeshSpec &spec, dealii::Triangulation<dim> &mesh)
+{
+  const unsigned most = std::ranges::max_element(spec.refine, {}, &Refinement::levels)->levels;
+  for (unsigned level = 0; level < most; ++level)
     {
-      auto mesh = std::make_unique<dealii::parallel::distributed::Triangulation<dim>>(communicator);
-      mesh->copy_triangulation(*whole);
-      return mesh;
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned() && std::ranges::any_of(spec.refine, [&](const Refinement &box) {
+              return cell->level() < static_cast<int>(box.levels) && lies_in<dim>(box, cell->center());
+            }))
+          cell->set_refine_flag();
+      mesh.execute_coarsening_and_refinement();
     }
+}
+
+/// Centres of the cells' faces on a side and their levels in place of the axis across it, sorted.
+template <int dim>
+std::vector<dealii::Point<dim>> levels_on_side(const dealii::Triangulation<dim> &mesh, unsigned axis, unsigned side)
+{
+  std::vector<dealii::Point<dim>> faces;
+  for (const auto &cell : mesh.active_cell_iterators())
+    for (const auto &face : cell->face_iterators())
+      if (face->at_boundary() && face->boundary_id() == 2 * axis + side)
+        {
+          faces.push_back(face->center());
+          faces.back()[axis] = cell->level();
+        }
+  std::ranges::sort(faces, [](const auto &one, const auto &other) {
+    for (unsigned d = 0; d < dim; ++d)
+      if (std::abs(one[d] - other[d]) > 1e-9)
+        return one[d] < other[d];
+    return false;
+  });
+  return faces;
+}
+
+/// Cells in the boxes of the spec are halved, and numbered again.   @param whole  of a mesh that is shared out
+/// @throws InputError  a box without a cell, or that ends within one side of two that are tied
+template <int dim>
+void refine(const MeshSpec &spec, bool tied_sides, dealii::Triangulation<dim> &mesh, dealii::Triangulation<dim> *whole)
+{
+  dealii::Triangulation<dim> &all = whole ? *whole : mesh;
+  const std::size_t n_layers = spec.soil.layers.size();
+  for (std::size_t k = 0; k < spec.refine.size(); ++k)
+    {
+      bool is_empty = true;
+      for (const auto &cell : all.active_cell_iterators())
+        is_empty = is_empty && !lies_in<dim>(spec.refine[k], cell->center());
+      if (is_empty)
+        throw InputError(fmt::format("refine.{}: no element has its centre in the box; give a larger one", k));
+    }
+  halve_cells(spec, all);
+  // Halves keep the mark of the cell that they were; with the way to them it says which they are on any rank.
+  const auto way = [](const auto &cell) {
+    const auto halves = cell->id().get_child_indices();
+    return std::pair(cell->material_id(), std::vector<unsigned>(halves.begin(), halves.end()));
+  };
+  std::map<std::pair<unsigned, std::vector<unsigned>>, unsigned> marks;
+  for (const auto &cell : all.active_cell_iterators())
+    {
+      const CellMark mark{cell->active_cell_index(), CellMark::of(cell->material_id(), n_layers).layer};
+      if (whole)
+        marks[way(cell)] = mark.packed(n_layers);
+      cell->set_material_id(mark.packed(n_layers));
+    }
+  for (unsigned axis = 0; tied_sides && axis + 1 < dim; ++axis)
+    if (!std::ranges::equal(levels_on_side(all, axis, 0), levels_on_side(all, axis, 1),
+                            [](const auto &one, const auto &other) { return one.distance(other) < 1e-6; }))
+      throw InputError("refine: elements at opposite sides, which are tied, must be refined alike; let both ends of a "
+                       "box reach a side, or none, or give the block walls");
+  if (!whole)
+    return;
+  halve_cells(spec, mesh);
+  for (const auto &cell : mesh.active_cell_iterators())
+    if (!cell->is_artificial())
+      cell->set_material_id(marks.at(way(cell)));
 }
 
 template <int dim>
@@ -223,17 +307,25 @@ std::unique_ptr<dealii::Triangulation<dim>> make_mesh(const MeshSpec &spec, bool
                                                       MPI_Comm communicator)
 {
   check(spec, dim);
-  auto mesh = std::make_unique<dealii::Triangulation<dim>>();
+  auto mesh =
+      std::make_unique<dealii::Triangulation<dim>>(dealii::Triangulation<dim>::limit_level_difference_at_vertices);
   if (spec.given)
     make_given(spec, *mesh);
   else
     make_block(spec, *mesh);
   for (std::size_t k = 0; k < spec.patches.size(); ++k)
     cut_patch(spec, k, *mesh);
-  if (shared_out)
-    mesh = shared<dim>(std::move(mesh), communicator);
+  std::unique_ptr<dealii::Triangulation<dim>> whole;
+  if constexpr (dim > 1)
+    if (shared_out)
+      {
+        whole = std::move(mesh);
+        mesh = shared(*whole, communicator);
+      }
   if (tied_sides)
     tie_sides(*mesh);
+  if (!spec.refine.empty())
+    refine(spec, tied_sides, *mesh, whole.get());
   return mesh;
 }
 

@@ -8,6 +8,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace isostat
@@ -48,20 +49,94 @@ void append_shares(const Values &lumped, std::size_t n_nodes, std::vector<double
     }
 }
 
-/// Local unknowns of a cell's nodes and corners.
+/// Rows over the nodes of a cell that become rows over those its functions belong to: row T.
+/// @param values  the last of them are those of the cell: [row][node][width]
+void combine(const std::vector<double> &weights, std::size_t n_rows, std::size_t width, std::vector<double> &values)
+{
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(weights.size())));
+  for (auto row = values.end() - static_cast<std::ptrdiff_t>(n_rows * n * width); n > 0 && row != values.end();
+       row += static_cast<std::ptrdiff_t>(n * width))
+    {
+      const std::vector<double> own(row, row + static_cast<std::ptrdiff_t>(n * width));
+      for (std::size_t b = 0; b < n; ++b)
+        for (std::size_t d = 0; d < width; ++d)
+          {
+            double sum = 0;
+            for (std::size_t a = 0; a < n; ++a)
+              sum += own[a * width + d] * weights[a * n + b];
+            row[static_cast<std::ptrdiff_t>(b * width + d)] = sum;
+          }
+    }
+}
+
+/// The set of shape functions of a cell where nodes hang, by those of other cells.
+void add_shape_set(const std::vector<double> &weights, const std::vector<double> &pressure_weights, CellTables &t)
+{
+  const std::size_t n_a = t.n_nodes, n_i = t.pressure_nodes_per_cell();
+  const auto append = [&t](std::vector<double> &sets, std::size_t n, const std::vector<double> &of_cell) {
+    const std::vector<double> first(sets.begin(), sets.begin() + static_cast<std::ptrdiff_t>(t.n_gauss * n));
+    sets.insert(sets.end(), first.begin(), first.end());
+    combine(of_cell, t.n_gauss, 1, sets);
+  };
+  append(t.shape, n_a, weights);
+  append(t.pressure_shape, n_i, pressure_weights);
+  t.hanging_weight.insert(t.hanging_weight.end(), weights.begin(), weights.end());
+  t.shape_set.resize(t.n_cells());
+  t.shape_set.back() = static_cast<unsigned>(t.hanging_weight.size() / (n_a * n_a));
+}
+
+/// Local unknowns of a cell, and what nodes that hang make of its shape functions.   @pre all else of it is there
 template <int dim, typename Cell, typename PressureCell>
 void append_unknowns(const Unknowns<dim> &unknowns, const Cell &cell, const PressureCell &same_cell, CellTables &t)
 {
-  std::vector<Index> node(t.n_nodes), corner(t.pressure_nodes_per_cell());
-  cell->get_dof_indices(node);
-  same_cell->get_dof_indices(corner);
-  for (Index n : node)
+  const auto [nodes, weights] = unknowns.hanging().of_cell(cell);
+  const auto [corners, pressure_weights] = unknowns.hanging_pressures().of_cell(same_cell);
+  for (Index n : nodes)
     for (unsigned c = 0; c < 3; ++c)
       t.cell_dofs.push_back(unknowns.dof_of_node(n, c));
-  for (Index n : corner)
+  for (Index n : corners)
     t.cell_pressures.push_back(unknowns.pressure_of_node(n));
+  if (!t.shape_set.empty())
+    t.shape_set.push_back(0);
+  if (weights.empty())
+    return;
+  combine(weights, t.n_gauss, dim, t.gradient);
+  combine(pressure_weights, t.n_gauss, dim, t.pressure_gradient);
+  combine(weights, 1, 1, t.nodal_share);
+  add_shape_set(weights, pressure_weights, t);
+}
+
+/// Gauss points of a cell.
+/// @throws InputError  it is not convex
+template <int dim, typename Values>
+void append_points(const Values &values, std::size_t number, CellTables &t)
+{
+  const double least_share =
+      *std::min_element(t.nodal_share.end() - static_cast<std::ptrdiff_t>(t.n_nodes), t.nodal_share.end());
+  for (std::size_t q = 0; q < t.n_gauss; ++q)
+    {
+      if (!(values.JxW(q) > 0) || least_share <= 0)
+        throw InputError(
+            fmt::format("mesh: the cell around x = {:.6g} m, z = {:.6g} m is folded or flat; must be convex",
+                        values.get_cell()->center()[0], values.get_cell()->center()[dim - 1]));
+      t.weight.push_back(values.JxW(q));
+      t.position.push_back(place_of<dim>(values.quadrature_point(q)));
+      t.point_id.push_back(number * t.n_gauss + q);
+    }
 }
 } // namespace
+
+double CellTables::at_node(std::span<const double> displacement, std::size_t cell, std::size_t node,
+                           unsigned component) const
+{
+  const unsigned *dofs = &cell_dofs[cell * n_nodes * 3 + component], set = shape_set.empty() ? 0 : shape_set[cell];
+  if (set == 0)
+    return displacement[dofs[3 * node]];
+  double sum = 0;
+  for (std::size_t b = 0; b < n_nodes; ++b)
+    sum += hanging_weight[((set - 1) * n_nodes + node) * n_nodes + b] * displacement[dofs[3 * b]];
+  return sum;
+}
 
 template <int dim>
 CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
@@ -87,21 +162,10 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
       u.reinit(cell);
       p.reinit(same_cell);
       lumped.reinit(cell);
-      append_unknowns(unknowns, cell, same_cell, t);
       append_gradients(u, t.n_nodes, t.n_gauss, t.gradient);
       append_gradients(p, t.pressure_nodes_per_cell(), t.n_gauss, t.pressure_gradient);
       append_shares(lumped, t.n_nodes, t.nodal_share);
-      const double least_share = *std::min_element(t.nodal_share.end() - t.n_nodes, t.nodal_share.end());
-      for (std::size_t q = 0; q < t.n_gauss; ++q)
-        {
-          if (!(u.JxW(q) > 0) || least_share <= 0)
-            throw InputError(fmt::format("mesh: the cell around x = {:.6g} m, z = {:.6g} m is folded or flat; must be "
-                                         "convex",
-                                         cell->center()[0], cell->center()[dim - 1]));
-          t.weight.push_back(u.JxW(q));
-          t.position.push_back(place_of<dim>(u.quadrature_point(q)));
-          t.point_id.push_back(mark.number * t.n_gauss + q);
-        }
+      append_points<dim>(u, mark.number, t);
       for (const unsigned v : cell->vertex_indices())
         t.corner.push_back(place_of<dim>(cell->vertex(v)));
       t.cell_layer.push_back(mark.layer);
@@ -111,6 +175,7 @@ CellTables make_tables(const MeshSpec &spec, const Unknowns<dim> &unknowns)
           t.shape = shapes(u, t.n_nodes, t.n_gauss);
           t.pressure_shape = shapes(p, t.pressure_nodes_per_cell(), t.n_gauss);
         }
+      append_unknowns(unknowns, cell, same_cell, t);
     }
   return t;
 }

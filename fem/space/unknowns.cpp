@@ -43,8 +43,8 @@ Index master_of(const std::map<Index, Index> &masters, Index node)
 
 /// Unknowns that this rank's cells use, one component for each of `masters`.
 template <int dim>
-VectorPartition partition(const dealii::DoFHandler<dim> &nodes, std::span<const std::map<Index, Index>> masters,
-                          MPI_Comm communicator)
+VectorPartition partition(const dealii::DoFHandler<dim> &nodes, const HangingNodes<dim> &hanging,
+                          std::span<const std::map<Index, Index>> masters, MPI_Comm communicator)
 {
   const Index n = masters.size(), total = nodes.n_dofs() * n;
   dealii::IndexSet owned(total), used(total);
@@ -52,15 +52,11 @@ VectorPartition partition(const dealii::DoFHandler<dim> &nodes, std::span<const 
   if (owned_nodes.n_elements() > 0)
     owned.add_range(owned_nodes.nth_index_in_set(0) * n,
                     (owned_nodes.nth_index_in_set(0) + owned_nodes.n_elements()) * n);
-  std::vector<Index> of_cell(nodes.get_fe().n_dofs_per_cell());
   for (const auto &cell : nodes.active_cell_iterators())
     if (cell->is_locally_owned())
-      {
-        cell->get_dof_indices(of_cell);
-        for (Index node : of_cell)
-          for (Index c = 0; c < n; ++c)
-            used.add_index(master_of(masters[c], node) * n + c);
-      }
+      for (Index node : hanging.of_cell(cell).nodes)
+        for (Index c = 0; c < n; ++c)
+          used.add_index(master_of(masters[c], node) * n + c);
   used.compress();
   return std::make_shared<const dealii::Utilities::MPI::Partitioner>(owned, used, communicator);
 }
@@ -73,14 +69,16 @@ Unknowns<dim>::Unknowns(const MeshSpec &spec, const Supports &supports, bool sha
 {
   nodes_.distribute_dofs(displacement_element_);
   pressures_.distribute_dofs(pressure_element_);
+  hanging_ = HangingNodes<dim>(nodes_);
+  hanging_pressures_ = HangingNodes<dim>(pressures_);
   if (supports.tied_sides)
     {
       masters_.fill(tied_nodes(nodes_));
       pressure_masters_ = tied_nodes(pressures_);
     }
   tie_faces(supports);
-  displacement_partition_ = partition<dim>(nodes_, masters_, communicator_);
-  pressure_partition_ = partition<dim>(pressures_, std::span(&pressure_masters_, 1), communicator_);
+  displacement_partition_ = partition<dim>(nodes_, hanging_, masters_, communicator_);
+  pressure_partition_ = partition<dim>(pressures_, hanging_pressures_, std::span(&pressure_masters_, 1), communicator_);
 }
 
 /// Faces whose nodes move together: the node with the smallest number stays.
@@ -92,8 +90,11 @@ void Unknowns<dim>::tie_faces(const Supports &supports)
       const int id = boundary_id<dim>(tie.face);
       if (id < 0)
         throw InputError("supports: a face of an axis that is not meshed; remove it");
-      const dealii::IndexSet on_face = dealii::DoFTools::extract_boundary_dofs(
-          nodes_, dealii::ComponentMask(), {static_cast<dealii::types::boundary_id>(id)});
+      std::vector<Index> on_face;
+      dealii::DoFTools::extract_boundary_dofs(nodes_, dealii::ComponentMask(),
+                                              {static_cast<dealii::types::boundary_id>(id)})
+          .fill_index_vector(on_face);
+      std::erase_if(on_face, [this](Index node) { return hanging_.hangs(node); });
       Masters &masters = masters_[tie.component];
       Index minimum = nodes_.n_dofs();
       for (Index node : on_face)

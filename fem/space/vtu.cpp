@@ -100,11 +100,10 @@ void write_elements(const std::filesystem::path &path, const FiniteElementSpace 
       const std::vector<float> of_cell = cell_means(means, cell, space.points_per_cell());
       for (std::size_t a = 0; a < order.size(); ++a)
         {
-          const unsigned *dofs = &space.cell_dofs[(cell * order.size() + a) * 3];
           unsigned row = 0;
           for (const NodeField &field : vectors)
             for (unsigned c = 0; c < 3; ++c)
-              patch.data(row++, order[a]) = static_cast<float>(field.values[dofs[c]]);
+              patch.data(row++, order[a]) = static_cast<float>(space.at_node(field.values, cell, a, c));
           for (const float mean : of_cell)
             patch.data(row++, order[a]) = mean;
         }

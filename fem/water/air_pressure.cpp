@@ -54,8 +54,7 @@ void AirPressure::find_residual(const Vector &b, const Vector &p)
     {
       const double rate = volumes_[q] * (3 * fluids_[q].volume(pressure[q]) - before_[q]) / two_steps_;
       for (std::size_t i = 0; i < n_i; ++i)
-        residual_.local_element(space_.cell_pressures[q / n_q * n_i + i]) +=
-            space_.pressure_shape[q % n_q * n_i + i] * rate;
+        residual_.local_element(space_.cell_pressures[q / n_q * n_i + i]) += space_.pressure_shapes(q)[i] * rate;
     }
   residual_.add_ghosts_to_owners();
   for (std::size_t i = 0; i < residual_.locally_owned_size(); ++i)
@@ -78,7 +77,7 @@ void AirPressure::find_tangent(const Vector &p)
             double sum = 0;
             for (std::size_t q = 0; q < n_q; ++q)
               sum += volumes_[cell * n_q + q] * fluids_[cell * n_q + q].storage(pressure[cell * n_q + q]) *
-                     space_.pressure_shape[q * n_i + i] * space_.pressure_shape[q * n_i + j];
+                     space_.pressure_shapes(cell * n_q + q)[i] * space_.pressure_shapes(cell * n_q + q)[j];
             petsc_check(MatSetValue(tangent_.get(), p.global_index(unknowns[i]), p.global_index(unknowns[j]),
                                     3 * sum / two_steps_, ADD_VALUES));
           }

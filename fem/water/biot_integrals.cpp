@@ -73,11 +73,12 @@ BiotCell biot_cell(const FiniteElementSpace &space, const CellGeometry &at, cons
     for (std::size_t q = 0; q < n_q; ++q)
       {
         const std::size_t point = cell * n_q + q;
-        const double w = at.weight[point], value = space.pressure_shape[q * n_i + i], mobility = points.mobility[point];
+        const double *shapes = space.pressure_shapes(point);
+        const double w = at.weight[point], value = shapes[i], mobility = points.mobility[point];
         const double *slope = &at.pressure_gradient[(point * n_i + i) * dim];
         for (std::size_t j = 0; j < n_i; ++j)
           {
-            c.s(i, j) += w * points.storage[point] * value * space.pressure_shape[q * n_i + j];
+            c.s(i, j) += w * points.storage[point] * value * shapes[j];
             for (std::size_t d = 0; d < dim; ++d)
               c.h(i, j) += w * mobility * slope[d] * at.pressure_gradient[(point * n_i + j) * dim + d];
           }
@@ -86,7 +87,7 @@ BiotCell biot_cell(const FiniteElementSpace &space, const CellGeometry &at, cons
             {
               const std::size_t column = 3 * a + mesh_axes[dim][d];
               c.g(i, column) += w * value * at.gradient[(point * n_a + a) * dim + d];
-              c.l(i, column) += w * mobility * points.fluid_density * slope[d] * space.shape[q * n_a + a];
+              c.l(i, column) += w * mobility * points.fluid_density * slope[d] * space.shapes(point)[a];
             }
       }
   return c;

@@ -20,13 +20,14 @@ double shared(double value, bool mine)
 }
 
 template <int dim>
-void run(Drainage drainage, double saturation = 1)
+void run(Drainage drainage, double saturation = 1, const std::vector<Refinement> &refine = {})
 {
   MeshSpec mesh{.soil = {.layers = {{.name = "soft", .thickness = 4, .permeability = 1e-3, .cells = 3},
                                     {.name = "stiff", .thickness = 6, .permeability = 1e-4, .cells = 3}},
                          .water = {}},
                 .width = {4, 3},
-                .cells_across = {2, 2}};
+                .cells_across = {2, 2},
+                .refine = refine};
   if (saturation < 1)
     {
       mesh.soil.layers[1].saturation = saturation;
@@ -34,7 +35,7 @@ void run(Drainage drainage, double saturation = 1)
     }
   const Discretisation<dim> space(mesh, shaken_supports(false), MPI_COMM_WORLD);
   Elastic material({.shear_modulus = 5e7, .poisson_ratio = 0.25}, space.n_points());
-  DynamicsSettings settings{.time_step = 5e-4, .drainage = drainage};
+  DynamicsSettings settings{.time_step = refine.empty() ? 5e-4 : 2e-4, .drainage = drainage};
   for (int axis = 0; axis < 3; ++axis)
     settings.motion[axis] = ricker_motion(1 - 0.2 * axis, 15 + axis, 0.1, 1e-3);
   Dynamics run(space, material, settings);
@@ -65,4 +66,7 @@ int main()
   run<3>(Drainage::coupled);
   run<3>(Drainage::dry);
   run<2>(Drainage::coupled, 0.98);
+  const std::vector<Refinement> band_and_core = {{{-1, -1, 3}, {9, 9, 7}, 1}, {{0.8, 0.6, 4}, {3.2, 2.4, 6}, 2}};
+  run<2>(Drainage::coupled, 0.98, band_and_core);
+  run<3>(Drainage::coupled, 1, band_and_core);
 }

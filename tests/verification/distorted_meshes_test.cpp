@@ -34,7 +34,7 @@ std::array<double, 2> cylinder(const Place &at)
 }
 
 /// L2 norm of the error on the unit square of n x n elements that are pushed about, its boundary as the cylinder moves.
-double error_of(unsigned n, unsigned degree)
+double error_of(unsigned n, unsigned degree, const std::vector<Refinement> &refine = {})
 {
   Supports supports;
   StaticsSettings settings;
@@ -45,7 +45,9 @@ double error_of(unsigned n, unsigned degree)
         if (c != 1)
           settings.displacements.push_back({{face, c}, [c](double, const Place &at) { return cylinder(at)[c / 2]; }});
       }
-  const Discretisation<2> space(drawn(n, n, test::PushedAbout<2>{n}, degree), supports);
+  MeshSpec spec = drawn(n, n, test::PushedAbout<2>{n}, degree);
+  spec.refine = refine;
+  const Discretisation<2> space(spec, supports);
   Elastic soil({5e7, 0.3}, space.n_points());
   Statics statics(space, soil, settings);
   statics.step(1);
@@ -55,7 +57,7 @@ double error_of(unsigned n, unsigned degree)
       {
         double u = 0;
         for (std::size_t a = 0; a < space.n_nodes; ++a)
-          u += space.shape[q % space.n_gauss * space.n_nodes + a] *
+          u += space.shapes(q)[a] *
                statics.displacement().local_element(space.cell_dofs[(q / space.n_gauss * space.n_nodes + a) * 3 + c]);
         sum += space.weight[q] * std::pow(u - cylinder(space.position[q])[c / 2], 2);
       }
@@ -70,6 +72,10 @@ TEST(DistortedMeshes, DisplacementsConvergeBySecondAndThirdOrder)
       const double coarse = error_of(8, degree), fine = error_of(16, degree), finest = error_of(32, degree);
       for (double order : {std::log2(coarse / fine), std::log2(fine / finest)})
         EXPECT_NEAR_BECAUSE(order, degree + 1, 0.2, "each mesh is distorted in its own way");
+      const std::vector<Refinement> halved = {{{0.125, 0, 0.25}, {0.625, 0, 0.75}, 1}};
+      const double hanging = error_of(8, degree, halved), of_half = error_of(16, degree, halved);
+      EXPECT_NEAR_BECAUSE(std::log2(hanging / of_half), degree + 1, 0.2, "each mesh is distorted in its own way");
+      EXPECT_BELOW_BECAUSE(hanging / coarse, 1, "a quarter of the elements is smaller");
     }
 }
 
@@ -83,16 +89,16 @@ TEST(DistortedMeshes, CooksMembrane)
   const Supports supports{.fixed = {{Face::x_low, 0}, {Face::x_low, 1}, {Face::x_low, 2}}};
   StaticsSettings settings;
   settings.tractions = {{Face::x_high, [](double, const Place &) { return Place{0, 0, 1. / 16}; }}};
-  const auto tip = [&](unsigned n, unsigned degree) {
-    const Discretisation<2> space(
-        drawn(
-            n, n,
-            [n](std::array<double, 3> at) {
-              at = test::PushedAbout<2>{n, 0.15}(at);
-              return std::array<double, 3>{48 * at[0], 44 * at[0] + at[1] * (44 - 28 * at[0]), 0};
-            },
-            degree),
-        supports);
+  const auto tip = [&](unsigned n, unsigned degree, const std::vector<Refinement> &refine = {}) {
+    MeshSpec spec = drawn(
+        n, n,
+        [n](std::array<double, 3> at) {
+          at = test::PushedAbout<2>{n, 0.15}(at);
+          return std::array<double, 3>{48 * at[0], 44 * at[0] + at[1] * (44 - 28 * at[0]), 0};
+        },
+        degree);
+    spec.refine = refine;
+    const Discretisation<2> space(spec, supports);
     Elastic soil({shear_modulus(young, poisson), poisson}, space.n_points());
     Statics statics(space, soil, settings);
     statics.step(1);
@@ -100,6 +106,10 @@ TEST(DistortedMeshes, CooksMembrane)
   };
   EXPECT_NEAR_BECAUSE(tip(16, 2) / 23.96, 1, 2e-3, "16 x 16 elements, and four figures of the reference");
   EXPECT_BELOW_BECAUSE(tip(8, 1) / 23.96, 0.97, "8 x 8 linear elements are too stiff in bending");
+  const std::vector<Refinement> clamped = {{{0, 0, 30}, {8, 0, 44}, 3}}; // the corner where the stress has no bound
+  const double coarse = tip(4, 2), at_corner = tip(4, 2, clamped);
+  EXPECT_BELOW_BECAUSE(std::abs(at_corner / 23.96 - 1) / std::abs(coarse / 23.96 - 1), 0.3,
+                       "most of the error of 4 x 4 elements is that of the corner");
 }
 
 /// Water that leaves through the surface of a strip, whose elements are pushed about in both directions.
@@ -158,7 +168,7 @@ namespace
 /// that is blown up to it, so that those at the edges of the cube are far from cubes.
 struct CryersSphere
 {
-  static MeshSpec octant(unsigned n)
+  static MeshSpec octant(unsigned n, const std::vector<Refinement> &refine)
   {
     MeshSpec spec = test::soil_of(test::read_gmsh_text(
         test::gmsh_text<3>({n, n, n},
@@ -171,6 +181,7 @@ struct CryersSphere
         3));
     spec.soil.layers[0].porosity = 0.33;
     spec.soil.layers[0].permeability = permeability;
+    spec.refine = refine;
     return spec;
   }
   static Supports supports()
@@ -189,8 +200,8 @@ struct CryersSphere
                                     }});
     return settings;
   }
-  explicit CryersSphere(unsigned n)
-      : space(octant(n), supports()), soil(elastic, space.n_points()), statics(space, soil, settings())
+  explicit CryersSphere(unsigned n, const std::vector<Refinement> &refine = {})
+      : space(octant(n, refine), supports()), soil(elastic, space.n_points()), statics(space, soil, settings())
   {
     const double k = elastic.bulk_modulus(), g = elastic.shear_modulus;
     const Water &water = space.mesh().soil.water;
@@ -247,5 +258,7 @@ TEST(DistortedMeshes, CryersSphere)
   EXPECT_NEAR_BECAUSE(peak, 1.472, 0.12, "the series has its peak at 0.06, when water comes from half of an element");
   EXPECT_BELOW_BECAUSE(fine, 0.06, "4 elements along the radius");
   EXPECT_NEAR_BECAUSE(std::log2(coarse / fine), 2, 0.5, "linear pressure, sides that are straight");
+  const auto [core, core_peak] = CryersSphere(2, {{{0, 0, 0}, {0.5, 0.5, 0.5}, 1}}).error_and_peak();
+  EXPECT_BELOW_BECAUSE(core / coarse, 1, "one of eight elements is halved, that in the middle");
 }
 } // namespace isostat

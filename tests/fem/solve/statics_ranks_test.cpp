@@ -138,6 +138,14 @@ TEST(StaticsRanks, SharedOutIsTheSame)
   compare<3>(false);
   compare<2>(false, Footing<2>::distorted());
   compare<2>(true, Footing<2>::distorted());
+  MeshSpec refined = Footing<2>::mesh();
+  refined.refine = {{{0.4, 0, 0.6}, {2, 0, 2}, 2}};
+  compare<2>(false, refined);
+  refined.refine.push_back({{-1, 0, 0}, {9, 0, 0.6}, 1}); // alike at both sides
+  compare<2>(true, refined);
+  refined = Footing<3>::mesh();
+  refined.refine = {{{0, 0, 0.6}, {2, 2, 2}, 1}};
+  compare<3>(false, refined);
 }
 
 TEST(StaticsRanks, IterativeSolversFindTheSame)
