@@ -10,7 +10,7 @@ from studies.columns import SCENES, Run, library
 from studies.leap_slope import cyclic, drained, results
 
 DEFAULTS, QUICK, PAGE = {"seeds": 5}, {"seeds": 1}, "leap"
-GRID_SEEDS, CHECK_SEEDS = 2, 2
+GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS = 2, 3, 2
 PACKINGS = 20  # of which each point of a slope draws one
 IWAN = {"material": "iwan", "relative_density": 0.65, "reference_pressure": "100 kPa", "k0": 0.5,
         "shear_velocity": "228 m/s"}  # G of Hardin and Richart (1963), as the packings'
@@ -39,9 +39,9 @@ def boxes():
 
 
 def runs(options):
-    grid_seeds, check_seeds = (1, 1) if options.quick else (GRID_SEEDS, CHECK_SEEDS)
-    return [*drained.grid(grid_seeds), *drained.checks(check_seeds), *cyclic.runs(options.seeds), *slopes(options),
-            *boxes()]
+    grid_seeds, cyclic_seeds, check_seeds = (1, 1, 1) if options.quick else (GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS)
+    return [*drained.grid(grid_seeds), *slopes(options), *boxes(), *cyclic.runs(cyclic_seeds),
+            *drained.checks(check_seeds)]
 
 
 def report(store, planned, folder):

@@ -11,7 +11,7 @@ from studies.history import parsed
 from studies.leap_slope import cyclic, drained
 from studies.tables import write_csv
 
-DEPTHS = (0.75, 1.75, 2.75, 3.75)  # m, near those of the centrifuges' transducers, 1 to 4 m
+DEPTHS = (0.8, 1.8, 2.8, 3.8)  # m, near those of the centrifuges' transducers, 1 to 4 m
 
 
 def done(store, planned, kind):
@@ -58,21 +58,25 @@ def cyclic_rows(store, planned):
         yield {"e0": run.void_ratio, "seed": run.seed, **cyclic.cycles(folder)}
 
 
+TIMES = np.arange(0, 20, 0.05)  # s, of curves
+
+
 def slope_of(folder):
-    """Displacement of the surface against the base in time; r_u in time at DEPTHS, from profiles."""
+    """Displacement of the surface against the base, and r_u at DEPTHS, at TIMES."""
     rows = read_table(folder / "history.csv")
     with h5py.File(folder / "profiles.h5") as file:
         depth, time, ru = (file[name][()] for name in ("depth", "time", "ru"))
     at = [int(np.abs(depth - z).argmin()) for z in DEPTHS]
-    return rows["time"], rows["surface_ux"], time, ru[:, at]
+    return (np.interp(TIMES, rows["time"], rows["surface_ux"]),
+            np.stack([np.interp(TIMES, time, ru[:, k]) for k in at], axis=1))
 
 
 def slope_rows(store, planned):
     for run, folder in done(store, planned, "column"):
         if run.case[0] != "slope":
             continue
-        time, moved, _, ru = slope_of(folder)
-        yield {"lot": run.case[1], "downslope (m)": parsed(folder)["downslope"], "end (s)": time[-1],
+        _, ru = slope_of(folder)
+        yield {"lot": run.case[1], "downslope (m)": parsed(folder)["downslope"],
                **{f"largest r_u at {z:g} m": float(ru[:, k].max()) for k, z in enumerate(DEPTHS)}}
 
 
@@ -111,18 +115,18 @@ def draw_slopes(members, box, path):
     for letter, axis in zip("abc", axes):
         axis.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9)
         axis.set_xlabel("time (s)")
-    for time, moved, at, ru in members:
-        axes[0].plot(time, moved, color=GREY, linewidth=0.6, alpha=0.6)
-    axes[0].plot(members[0][0], np.median([moved for _, moved, _, _ in members], axis=0), color=BLUE,
+    for moved, _ in members:
+        axes[0].plot(TIMES, 1e3 * moved, color=GREY, linewidth=0.6, alpha=0.6)
+    axes[0].plot(TIMES, 1e3 * np.median([moved for moved, _ in members], axis=0), color=BLUE,
                  label=f"packings, median of {len(members)}")
     if box is not None:
-        axes[0].plot(*box, color=ORANGE, label="box of Iwan sand")
-    axes[0].set_ylabel("surface downslope (m)")
+        axes[0].plot(box["time"], 1e3 * box["surface_ux"], color=ORANGE, label="box of Iwan sand")
+    axes[0].set_ylabel("surface downslope (mm)")
     axes[0].legend(loc="upper left")
     for k, axis in ((0, axes[1]), (3, axes[2])):
-        for _, _, at, ru in members:
-            axis.plot(at, ru[:, k], color=GREY, linewidth=0.6, alpha=0.6)
-        axis.plot(members[0][2], np.median([ru[:, k] for _, _, _, ru in members], axis=0), color=BLUE)
+        for _, ru in members:
+            axis.plot(TIMES, ru[:, k], color=GREY, linewidth=0.6, alpha=0.6)
+        axis.plot(TIMES, np.median([ru[:, k] for _, ru in members], axis=0), color=BLUE)
         axis.set_ylabel(f"$r_u$ at {DEPTHS[k]:g} m")
     save(figure, path)
 
@@ -137,6 +141,8 @@ def report(store, planned, folder):
             write_csv(folder / f"{name}.csv", rows, 4)
     if tables["drained"]:
         draw_drained(tables["drained"], folder / "drained.png")
-    members = [slope_of(path) for run, path in done(store, planned, "column") if run.case[0] == "slope"]
+    columns = {run.case: path for run, path in done(store, planned, "column")}
+    members = [slope_of(path) for case, path in columns.items() if case[0] == "slope"]
     if members:
-        draw_slopes(members, None, folder / "slope.png")
+        box = read_table(columns["box", "iwan"] / "history.csv") if ("box", "iwan") in columns else None
+        draw_slopes(members, box, folder / "slope.png")
