@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables and figures of the fit, the cyclic test and the slopes."""
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+
+from isostat.results import read_table
+from studies.drawing import BLUE, GREEN, GREY, ORANGE, panels, save
+from studies.ensembles import ensemble
+from studies.history import parsed
+from studies.leap_slope import cyclic, drained
+from studies.tables import write_csv
+
+DEPTHS = (0.8, 1.8, 2.8, 3.8)  # m, near those of the centrifuges' transducers, 1 to 4 m
+
+
+def done(store, planned, kind):
+    return [(run, store.folder(run)) for run in planned if run.kind == kind and store.is_done(run)]
+
+
+def strengths(store, planned):
+    """{(friction, limit, preparation, seed): strength} of the grid, and the runs of the fitted sand with theirs."""
+    found = [(run, drained.strength(read_table(folder / "history.csv"))) for run, folder in done(store, planned, "drained")]
+    return ({(run.friction, run.limit, run.preparation, run.seed): value for run, value in found if run.friction},
+            [(run, value) for run, value in found if run.void_ratio])
+
+
+def fit_rows(grid):
+    """Of all packings, and of those of each seed alone."""
+    seeds = sorted({key[3] for key in grid})
+    for of in ([seeds] if len(seeds) == 1 else [seeds, *([seed] for seed in seeds)]):
+        part = {key: value for key, value in grid.items() if key[3] in of}
+        if len(part) < len(of) * len(drained.FRICTIONS) * len(drained.LIMITS) * len(drained.PREPARATIONS):
+            continue
+        friction, limit, misfit, tests = drained.fit(part)
+        for e0, (laboratory, peak, preparation) in tests.items():
+            yield {"seeds": " ".join(map(str, of)), "friction (deg)": friction, "eta_r": limit, "misfit (deg)": misfit,
+                   "e0": e0, "laboratory (deg)": laboratory, "fit (deg)": peak, "preparation (deg)": preparation}
+
+
+def check_rows(checked):
+    for row in drained.tests():
+        mode = "compression" if row["mode"] == "TC" else "extension"
+        values = [value for run, value in checked if (run.void_ratio, run.pressure, run.direction) ==
+                  (row["e0"], row["sigma_3 (kPa)"], mode)]
+        if not values:
+            continue
+        (peak, deviation, _, n), (strain, *_), (e, *_) = map(ensemble, zip(*values))
+        yield {"e0": row["e0"], "direction": mode, "sigma_3 (kPa)": row["sigma_3 (kPa)"],
+               "fitted": drained.is_fitted(row), "laboratory (deg)": row["peak friction (deg)"], "packings (deg)": peak,
+               "s.d.": deviation, "n": n, "difference (deg)": peak - row["peak friction (deg)"],
+               "strain at the peak, laboratory (%)": abs(row["strain at the peak (%)"]), "packings (%)": 100 * strain,
+               "e of packings": e}
+
+
+def cyclic_rows(store, planned):
+    for run, folder in done(store, planned, "cyclic"):
+        yield {"e0": run.void_ratio, "seed": run.seed, **cyclic.cycles(folder)}
+
+
+TIMES = np.arange(0, 20, 0.05)  # s, of curves
+
+
+def slope_of(folder):
+    """Displacement of the surface against the base, and r_u at DEPTHS, at TIMES."""
+    rows = read_table(folder / "history.csv")
+    with h5py.File(folder / "profiles.h5") as file:
+        depth, time, ru = (file[name][()] for name in ("depth", "time", "ru"))
+    at = [int(np.abs(depth - z).argmin()) for z in DEPTHS]
+    return (np.interp(TIMES, rows["time"], rows["surface_ux"]),
+            np.stack([np.interp(TIMES, time, ru[:, k]) for k in at], axis=1))
+
+
+def slope_rows(store, planned):
+    for run, folder in done(store, planned, "column"):
+        if run.case[0] != "slope":
+            continue
+        _, ru = slope_of(folder)
+        yield {"lot": run.case[1], "downslope (m)": parsed(folder)["downslope"],
+               **{f"largest r_u at {z:g} m": float(ru[:, k].max()) for k, z in enumerate(DEPTHS)}}
+
+
+def box_rows(store, planned):
+    for run, folder in done(store, planned, "column"):
+        if run.case[0] == "box":
+            motion = parsed(folder)["surface_motion"]
+            yield {"box": run.case[1], "mid-slope along x (m)": motion["along_x"], "settlement (m)": motion["settlement"],
+                   "heave (m)": motion["heave"]}
+
+
+def draw_drained(rows, path):
+    """Peak friction over void ratio, at 100 to 300 kPa, above it, and in extension; strain at the peak."""
+    figure, (axes,) = panels(1, 2)
+    kinds = (("o", BLUE, "fitted: compression, 100 to 300 kPa", lambda row: row["fitted"]),
+             ("s", ORANGE, "500 to 700 kPa", lambda row: not row["fitted"] and row["direction"] == "compression"),
+             ("^", GREEN, "extension", lambda row: row["direction"] == "extension"))
+    for marker, colour, label, belongs in kinds:
+        part = [row for row in rows if belongs(row)]
+        for axis, laboratory, packings in ((axes[0], "laboratory (deg)", "packings (deg)"),
+                                           (axes[1], "strain at the peak, laboratory (%)", "packings (%)")):
+            axis.errorbar([row[laboratory] for row in part], [row[packings] for row in part],
+                          [row["s.d."] for row in part] if axis is axes[0] else None, fmt=marker, color=colour,
+                          markersize=4, linewidth=0.8, capsize=2, label=label)
+    for axis, name in zip(axes, ("peak friction (deg)", "axial strain at the peak (%)")):
+        ends = [min(axis.get_xlim()[0], axis.get_ylim()[0]), max(axis.get_xlim()[1], axis.get_ylim()[1])]
+        axis.plot(ends, ends, color=GREY, linewidth=0.8, zorder=0)
+        axis.set(xlabel=f"laboratory: {name}", ylabel=f"packings: {name}")
+    axes[0].legend(loc="upper left")
+    save(figure, path)
+
+
+def draw_slopes(members, box, path):
+    """Displacement of the surface, and r_u at the depths: members grey, medians coloured."""
+    figure, axes = plt.subplots(1, 3, figsize=(7.2, 2.7), layout="constrained", gridspec_kw={"width_ratios": (1.2, 1, 1)})
+    for letter, axis in zip("abc", axes):
+        axis.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9)
+        axis.set_xlabel("time (s)")
+    for moved, _ in members:
+        axes[0].plot(TIMES, 1e3 * moved, color=GREY, linewidth=0.6, alpha=0.6)
+    axes[0].plot(TIMES, 1e3 * np.median([moved for moved, _ in members], axis=0), color=BLUE,
+                 label=f"packings, median of {len(members)}")
+    if box is not None:
+        axes[0].plot(box["time"], 1e3 * box["surface_ux"], color=ORANGE, label="box of Iwan sand")
+    axes[0].set_ylabel("surface downslope (mm)")
+    axes[0].legend(loc="upper left")
+    for k, axis in ((0, axes[1]), (3, axes[2])):
+        for _, ru in members:
+            axis.plot(TIMES, ru[:, k], color=GREY, linewidth=0.6, alpha=0.6)
+        axis.plot(TIMES, np.median([ru[:, k] for _, ru in members], axis=0), color=BLUE)
+        axis.set_ylabel(f"$r_u$ at {DEPTHS[k]:g} m")
+    save(figure, path)
+
+
+def report(store, planned, folder):
+    grid, checked = strengths(store, planned)
+    tables = {"fit": list(fit_rows(grid)), "drained": list(check_rows(checked)),
+              "cyclic": list(cyclic_rows(store, planned)), "slopes": list(slope_rows(store, planned)),
+              "box": list(box_rows(store, planned))}
+    for name, rows in tables.items():
+        if rows:
+            write_csv(folder / f"{name}.csv", rows, 4)
+    if tables["drained"]:
+        draw_drained(tables["drained"], folder / "drained.png")
+    columns = {run.case: path for run, path in done(store, planned, "column")}
+    members = [slope_of(path) for case, path in columns.items() if case[0] == "slope"]
+    if members:
+        box = read_table(columns["box", "iwan"] / "history.csv") if ("box", "iwan") in columns else None
+        draw_slopes(members, box, folder / "slope.png")
