@@ -25,7 +25,8 @@ STATED = {
     "column_scene": {
         "mesh.degree": '2 where drainage is "coupled"', "mesh.dimension": "1: a column",
         "mesh.distributed": "Of dimension 2 or 3", "mesh.points": "at least the degree", "mesh.sides": "dimension 2",
-        "mesh.file": "in dimension 3", "mesh.cells_across": "left out with `file`", "mesh.width": "that of `file`",
+        "mesh.file": "in dimension 3", "refine.from": "of a block x, y", "refine.to": "above `from`",
+        "mesh.cells_across": "left out with `file`", "mesh.width": "that of `file`",
         "layer.thickness": "left out with `mesh.file`",
         "mesh.ground_x": "on boundaries between elements", "mesh.ground_z": "the highest being that of all layers",
         "analysis.large_strain": "Not in an undrained column", "water.drainage": "a column only",
@@ -61,7 +62,7 @@ STATED = {
         "analysis.weak.cells": "The square lies in the block", "output.depths": "Within the soil",
         "output.profile_interval": "", "output.x": "Of a strip"},
 }
-WHOLE_SECTIONS = {"motion", "grains"}  # a table that is refused, not a key
+WHOLE_SECTIONS = {"motion", "grains", "refine"}  # a table that is refused, not a key
 
 
 def rows_of(page):

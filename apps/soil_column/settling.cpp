@@ -19,7 +19,7 @@ bool has_plate(const ColumnScene &scene, PlateSide side)
   return scene.analysis.kind == AnalysisKind::plate && scene.plate.on == side;
 }
 
-/// A surcharge on a part of the surface has a face of its own where elements at its ends may be of two sizes, so that
+/// A surcharge on a part of the surface is on a separate face where elements at its ends may be of two sizes, so that
 /// half of a node's area is not that below the surcharge (ColumnLoad::surcharge_at).
 bool has_strip(const ColumnScene &scene) { return !scene.refine.empty() && !scene.load.bears_on_all(); }
 

@@ -6,7 +6,8 @@ namespace isostat
 {
 /// The vertical line of nodes and points nearest to x = y = 0, from the surface down: where profiles are taken. In a
 /// column these are all its points; of a mesh that is given, where a vertical has no nodes, those nearest to the sides
-/// and middles of the cells that it crosses; of one that is refined, the nodes before.   @pre the mesh is not shared out
+/// and middles of the cells that it crosses; of one that is refined, the nodes before.
+/// @pre the mesh is not shared out
 struct ColumnLine
 {
   std::vector<std::size_t> points;  ///< numbers of the points

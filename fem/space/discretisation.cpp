@@ -41,7 +41,7 @@ unsigned number_of(Face face, const char *whose)
   return static_cast<unsigned>(id);
 }
 
-/// Nodes on a face that this rank's own cells have, cell by cell; of those that hang what they hang on.
+/// Nodes on a face that this rank's own cells have, cell by cell; in place of one that hangs those it depends on.
 template <int dim>
 std::vector<Index> nodes_on_face(const dealii::DoFHandler<dim> &nodes, const HangingNodes<dim> &hanging, Face face)
 {

@@ -7,10 +7,10 @@
 
 namespace isostat
 {
-/// The nodes that the shape functions of a cell belong to. Where a face or edge hangs on a coarser neighbour they are
-/// those of the neighbour: the cell's own get the values that the neighbour has there, u_A = sum_B T_AB u_B, and the
-/// functions become N_B = sum_A N_A T_AB, as many as before (Bangerth & Kayser-Herold 2009, doi:10.1145/1486525.1486529,
-/// section 3.3).
+/// The nodes that the shape functions of a cell belong to. On a face or edge of a coarser neighbour they are those of
+/// the neighbour: the cell's own hang, with the values that the neighbour has there, u_A = sum_B T_AB u_B, and the
+/// functions become N_B = sum_A N_A T_AB, as many as before (Bangerth & Kayser-Herold 2009,
+/// doi:10.1145/1486525.1486529, section 3.3).
 struct CellNodes
 {
   std::vector<dealii::types::global_dof_index> nodes;
@@ -30,7 +30,7 @@ public:
   explicit HangingNodes(const dealii::DoFHandler<dim> &nodes); ///< collective where the mesh is shared out
 
   bool hangs(Index node) const { return constraints_.is_constrained(node); }
-  /// Calls f for the nodes that a node hangs on, or for the node itself.
+  /// Calls f for the nodes that a hanging node depends on, or for the node itself.
   template <typename F>
   void for_each_master(Index node, const F &f) const
   {

@@ -127,6 +127,36 @@ class Box(ColumnTest):
         text = (self.folder / "run/summary.txt").read_text(encoding="utf-8")
         self.assertRegex(text, r"surface moved +\+0\.\d+ m along x at x = 6 m")
 
+    def test_refined_elements(self):
+        """Nodes that hang are where their neighbours are, in maps, too; the same bits on any number of ranks."""
+        short = settings(analysis__duration="0.3 s")
+        refine = '[[refine]]\nfrom = ["3.5 m", "0.9 m"]\nto = ["8.5 m", "4 m"]\nlevels = 2\n'
+        self.scene = self.write("refined.toml", BOX + refine)
+        self.assert_done(self.run_column(self.scene, "-o", "run", *short))
+        maps = self.maps("run")
+        self.assertEqual(len(maps["corner_x"]), 4 * 102)
+        places = np.round(np.stack([maps["corner_x"], maps["corner_z"]]), 9)
+        u = maps["displacement_x"][-1]
+        self.assertGreater(np.abs(u).max(), 1e-4)
+        for k, (x, z) in enumerate(places.T):
+            same = (places == [[x], [z]]).all(axis=0)
+            self.assertTrue((u[same] == u[k]).all() or np.ptp(u[same]) < 1e-15, (x, z))
+        self.check_ranks(*settings(analysis__duration="0.1 s"))
+
+    def test_refined_elements_are_shared_out_and_meet_free_fields(self):
+        refine = '[[refine]]\nfrom = ["3.5 m", "0.9 m"]\nto = ["8.5 m", "4 m"]\nlevels = 2\n'
+        self.scene = self.write("shared.toml", SHARED + refine)
+        self.check_shared_mesh((2,), MOTION, 1e-7, *DISTRIBUTED, *settings(analysis__duration="0.3 s"))
+        level = re.sub(r"(ground_.|profile_interval|paraview_interval) = .*\n", "", BOX).replace("coupled", "dry")
+        level = level.replace('[analysis]\nduration = "2 s"\nsafety = 0.5',
+                              '[analysis]\nduration = "0.5 s"\ntime_step = "0.2 ms"')
+        band = '[[refine]]\nfrom = ["0 m", "1.2 m"]\nto = ["12 m", "2.4 m"]\n'
+        (free, _), (tied, _) = (self.rows_of(level.replace("walls", sides) + band, sides)
+                                for sides in ("free-field", "tied"))
+        self.assertGreater(np.abs(tied["surface_ux"]).max(), 1e-4)
+        self.assert_near(free["surface_ux"], tied["surface_ux"], 1e-9 * np.abs(tied["surface_ux"]).max(),
+                         "round-off: the columns at the sides have the elements of the band")
+
     def test_at_rest_it_stays_still_bit_for_bit(self):
         rows, summary = self.rows_of(re.sub(r"\[\[motion\]\][^\[]*", "", BOX))
         self.check_stress_in_situ()

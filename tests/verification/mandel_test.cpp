@@ -214,6 +214,5 @@ TEST(Mandel, DistortedElements)
   const std::vector<Refinement> drained = {{{0.5 * half_width, 0, 0}, {half_width, 0, 0.6 * thickness}, 1}};
   const double hanging = error(8, drained), of_half = error(16, drained);
   EXPECT_NEAR_BECAUSE(std::log2(hanging / of_half), 2, 0.4, "linear pressure; each mesh is distorted in its own way");
-  std::printf("mandel %g %g / %g %g\n", coarse, fine, hanging, of_half);
 }
 } // namespace isostat

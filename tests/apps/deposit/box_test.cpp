@@ -35,6 +35,25 @@ TEST(BoxScene, KeysComeThroughTextAndGoToTheMesh)
   EXPECT_EQ(scene.load.surcharge_at(6.1), 0);
 }
 
+TEST(BoxScene, RefinementsComeThroughTextAndGoToTheMesh)
+{
+  const std::string refine = "[[refine]]\nfrom = [\"2 m\", \"1 m\"]\nto = [\"5 m\", \"4 m\"]\nlevels = 2\n",
+                    above = "[[refine]]\nfrom = [\"0 m\", \"3 m\"]\n";
+  const ColumnScene scene = parse_column_scene(box(refine + above), "s");
+  EXPECT_EQ(parse_column_scene(to_toml(scene), "again"), scene);
+  const std::vector<Refinement> boxes = mesh_spec(scene).refine;
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_EQ(boxes[0].levels, 2u);
+  EXPECT_EQ(boxes[0].from[0], 2);
+  EXPECT_EQ(boxes[0].to[2], 4);
+  EXPECT_EQ(boxes[1].levels, 1u);
+  EXPECT_GT(boxes[1].to[0], 1e6);
+  expect_refused(sand + dry + above + dynamic, {"column.toml:8", "refine", "needs mesh.dimension 2 or 3"});
+  expect_refused(box(refine), {"refine.0.from", "must have 2 lengths: x and height"}, {"refine.0.from=[\"1 m\"]"});
+  expect_refused(box(refine), {"refine.0.to", "must be above"}, {"refine.0.to=[\"5 m\", \"1 m\"]"});
+  expect_refused(box(refine), {"refine.0.levels", "in [1, 8]"}, {"refine.0.levels=9"});
+}
+
 TEST(BoxScene, WithoutWallsAllIsAsItWas)
 {
   const ColumnScene scene = parse_column_scene(sand + dry + dynamic, "s");
