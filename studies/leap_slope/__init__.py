@@ -5,7 +5,8 @@ The contact is fitted to peak friction over a grid (drained.py); its numbers are
 Tests of other packings of this sand, the cyclic test (cyclic.py) and slopes of 4 m follow: infinite ones of packings,
 each with others at its points, and the box of the centrifuges of Iwan sand of the same relative density.
 """
-from studies.columns import SCENES, Run, library
+from isostat.campaign.library import make_library, parse
+from studies.columns import SCENES, Run
 from studies.leap_slope import cyclic, drained, results
 
 DEFAULTS, QUICK, PAGE = {"seeds": 5}, {"seeds": 1}, "leap"
@@ -20,7 +21,9 @@ def library_of(options):
 
 
 def prepare(options, executor):
-    library(library_of(options), executor, PACKINGS, ["20 kPa"], {}, "rve_library_ottawa.toml")
+    path = library_of(options)
+    if not path.exists():
+        make_library(parse([str(SCENES / "rve_library_ottawa.toml"), "-n", str(PACKINGS), "-o", str(path)]), executor)
 
 
 def slopes(options):
