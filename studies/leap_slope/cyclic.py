@@ -11,7 +11,6 @@ from studies.scenes import cyclic
 
 VOID_RATIO, PRESSURE, AMPLITUDE = 0.507, 100, 65  # kPa; q = 2 x 0.325 x 100 kPa
 GRAINS, MOST_CYCLES, ONSET, STRAIN = 1000, 100, 0.05, 0.025  # ONSET: p'/p0' at which r_u counts as 1
-LABORATORY = {"r_u": 18, "strain": 41}  # cycles: apps/laboratory/README.md
 
 
 @dataclasses.dataclass(frozen=True)
