@@ -41,14 +41,14 @@ def histories(store, planned):
     return {run.case: isostat.read(store.folder(run)).history for run in planned if store.is_done(run)}
 
 
-def library(path, executor, n, pressures, settings, scene="rve_library.toml"):
-    """Makes a library of a scene of apps/scenes with other settings, if it does not exist: n seeds at each pressure,
-    less those that cannot be prepared, which miss their density."""
+def library(path, executor, n, pressures, settings):
+    """Makes a library of apps/scenes/rve_library.toml with other settings, if it does not exist: n seeds at each
+    pressure, less those that cannot be prepared, which miss their density."""
     if path.exists():
         return
     words = [f"--set={key}={value}" for key, value in settings.items()]
     try:
-        make_library(parse([str(SCENES / scene), "-n", str(n), "--pressures", ",".join(pressures), "-o",
+        make_library(parse([str(SCENES / "rve_library.toml"), "-n", str(n), "--pressures", ",".join(pressures), "-o",
                             str(path), *words]), executor)
     except isostat.RunFailure as error:
         print(error, flush=True)

@@ -3,14 +3,14 @@
 
 The contact is fitted to peak friction over a grid (drained.py); its numbers are those of the installed sand ottawa-f65.
 Tests of other packings of this sand, the cyclic test (cyclic.py) and slopes of 4 m follow: infinite ones of packings,
-each with others at its points, and of Iwan sand of the same relative density, and the box of the centrifuges of Iwan
-sand.
+each with others at its points, and the box of the centrifuges of Iwan sand of the same relative density.
 """
-from studies.columns import SCENES, Run, library
+from isostat.campaign.library import make_library, parse
+from studies.columns import SCENES, Run
 from studies.leap_slope import cyclic, drained, results
 
 DEFAULTS, QUICK, PAGE = {"seeds": 5}, {"seeds": 1}, "leap"
-GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS = 2, 3, 2
+GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS = 2, 3, 1
 PACKINGS = 20  # of which each point of a slope draws one
 IWAN = {"material": "iwan", "relative_density": 0.65, "reference_pressure": "100 kPa", "k0": 0.5,
         "shear_velocity": "228 m/s"}  # G of Hardin and Richart (1963), as the packings'
@@ -21,14 +21,16 @@ def library_of(options):
 
 
 def prepare(options, executor):
-    library(library_of(options), executor, PACKINGS, ["20 kPa"], {}, "rve_library_ottawa.toml")
+    path = library_of(options)
+    if not path.exists():
+        make_library(parse([str(SCENES / "rve_library_ottawa.toml"), "-n", str(PACKINGS), "-o", str(path)]), executor)
 
 
 def slopes(options):
     file, scene = library_of(options), SCENES / "column/slope_leap.toml"
     short = {"analysis.duration": "0.2 s"} if options.quick else {}
-    cache = {"grains.library": file, "grains.cache": options.output / "in_situ.h5"}
-    return [Run(("slope", lot), scene, tuple((cache | {"layer.0.lot": lot} | short).items()), 15 if short else 150, (file,))
+    keys = {"grains.library": file, "grains.cache": options.output / "in_situ.h5"} | short
+    return [Run(("slope", lot), scene, tuple((keys | {"layer.0.lot": lot}).items()), 15 if short else 150, (file,))
             for lot in range(options.seeds)]
 
 

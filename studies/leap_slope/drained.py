@@ -52,7 +52,8 @@ class Drained:
 
     @property
     def name(self):
-        of = f"e{self.void_ratio:g}" if self.void_ratio else f"{self.friction:g}deg_{self.limit:g}_{self.preparation:g}deg"
+        of = (f"e{self.void_ratio:g}" if self.void_ratio else
+              f"{self.friction:g}deg_{self.limit:g}_{self.preparation:g}deg")
         return f"{self.direction}_{of}_{self.pressure:g}kPa_s{self.seed}"
 
     def scene(self):
@@ -87,8 +88,8 @@ def checks(seeds):
 
 
 def strength(history):
-    """Peak friction angle, deg: sin(phi) = (sigma_1 - sigma_3)/(sigma_1 + sigma_3), axial strain there and void ratio at
-    the start.   tested: tests/studies/leap_slope_test.py"""
+    """Peak friction angle, deg: sin(phi) = (sigma_1 - sigma_3)/(sigma_1 + sigma_3), axial strain there and void ratio
+    at the start.   tested: tests/studies/leap_slope_test.py"""
     q, p, axial = history["q"], history["p"], history["eps_y"]
     sine = np.abs(q) / (2 * p + q / 3)  # in extension q < 0 and sigma_1 is the lateral stress
     peak = int(sine.argmax())
@@ -121,9 +122,11 @@ def fit(strengths):
     strengths: {(friction, limit, preparation, seed): (peak friction, strain, void ratio)} of the whole grid
     returns    friction, limit, misfit in deg, {void ratio: (laboratory, fit, preparation friction)}
     """
-    corners = [[[at_void_ratio([(key[2], *value) for key, value in strengths.items() if key[:2] == (friction, limit)], e0)
-                 for e0 in fitted()] for limit in LIMITS] for friction in FRICTIONS]
-    table = np.array(corners)  # friction, limit, void ratio, (peak friction, preparation friction)
+    def packings(*contact):
+        return [(key[2], *value) for key, value in strengths.items() if key[:2] == contact]
+
+    table = np.array([[[at_void_ratio(packings(friction, limit), e0) for e0 in fitted()] for limit in LIMITS]
+                      for friction in FRICTIONS])  # last index: peak friction, preparation friction
     s, t = np.meshgrid(*2 * [np.linspace(0, 1, 101)], indexing="ij")
     weights = np.stack([[(1 - s) * (1 - t), (1 - s) * t], [s * (1 - t), s * t]])
     values = np.einsum("ijmn,ijev->mnev", weights, table)

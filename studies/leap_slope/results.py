@@ -4,14 +4,17 @@ import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 
+from isostat.figures.common import legend_below
 from isostat.results import read_table
 from studies.drawing import BLUE, GREEN, GREY, ORANGE, panels, save
 from studies.ensembles import ensemble
 from studies.history import parsed
 from studies.leap_slope import cyclic, drained
-from studies.tables import write_csv
+from studies.tables import read_csv, write_csv
 
 DEPTHS = (0.8, 1.8, 2.8, 3.8)  # m, near those of the centrifuges' transducers, 1 to 4 m
+BUOYANT = 10.08  # unit weight of the scene, kN/m3
+TIMES = np.arange(0, 20, 0.05)  # s, of curves
 
 
 def done(store, planned, kind):
@@ -20,7 +23,8 @@ def done(store, planned, kind):
 
 def strengths(store, planned):
     """{(friction, limit, preparation, seed): strength} of the grid, and the runs of the fitted sand with theirs."""
-    found = [(run, drained.strength(read_table(folder / "history.csv"))) for run, folder in done(store, planned, "drained")]
+    found = [(run, drained.strength(read_table(folder / "history.csv")))
+             for run, folder in done(store, planned, "drained")]
     return ({(run.friction, run.limit, run.preparation, run.seed): value for run, value in found if run.friction},
             [(run, value) for run, value in found if run.void_ratio])
 
@@ -58,9 +62,6 @@ def cyclic_rows(store, planned):
         yield {"e0": run.void_ratio, "seed": run.seed, **cyclic.cycles(folder)}
 
 
-TIMES = np.arange(0, 20, 0.05)  # s, of curves
-
-
 def slope_of(folder):
     """Displacement of the surface against the base, and r_u at DEPTHS, at TIMES."""
     rows = read_table(folder / "history.csv")
@@ -71,9 +72,16 @@ def slope_of(folder):
             np.stack([np.interp(TIMES, time, ru[:, k]) for k in at], axis=1))
 
 
+def centrifuge():
+    """{depth: least and largest r_u of test CU1 in one cycle}, m."""
+    return {row["depth (m)"]: [row[name] / (BUOYANT * row["depth (m)"])
+                               for name in ("least excess pressure (kPa)", "largest (kPa)")]
+            for row in read_csv(drained.LABORATORY / "leap_cu1.csv")}
+
+
 def slope_rows(store, planned):
     for run, folder in done(store, planned, "column"):
-        if run.case[0] != "slope":
+        if run.case[0] == "box":
             continue
         _, ru = slope_of(folder)
         yield {"lot": run.case[1], "downslope (m)": parsed(folder)["downslope"],
@@ -84,12 +92,12 @@ def box_rows(store, planned):
     for run, folder in done(store, planned, "column"):
         if run.case[0] == "box":
             motion = parsed(folder)["surface_motion"]
-            yield {"box": run.case[1], "mid-slope along x (m)": motion["along_x"], "settlement (m)": motion["settlement"],
-                   "heave (m)": motion["heave"]}
+            yield {"box": run.case[1], "mid-slope along x (m)": motion["along_x"],
+                   "settlement (m)": motion["settlement"], "heave (m)": motion["heave"]}
 
 
 def draw_drained(rows, path):
-    """Peak friction over void ratio, at 100 to 300 kPa, above it, and in extension; strain at the peak."""
+    """Peak friction and the strain there, of packings over those of the laboratory."""
     figure, (axes,) = panels(1, 2)
     kinds = (("o", BLUE, "fitted: compression, 100 to 300 kPa", lambda row: row["fitted"]),
              ("s", ORANGE, "500 to 700 kPa", lambda row: not row["fitted"] and row["direction"] == "compression"),
@@ -98,20 +106,19 @@ def draw_drained(rows, path):
         part = [row for row in rows if belongs(row)]
         for axis, laboratory, packings in ((axes[0], "laboratory (deg)", "packings (deg)"),
                                            (axes[1], "strain at the peak, laboratory (%)", "packings (%)")):
-            axis.errorbar([row[laboratory] for row in part], [row[packings] for row in part],
-                          [row["s.d."] for row in part] if axis is axes[0] else None, fmt=marker, color=colour,
-                          markersize=4, linewidth=0.8, capsize=2, label=label)
+            axis.plot([row[laboratory] for row in part], [row[packings] for row in part], marker, color=colour,
+                      markersize=4, label=label)
     for axis, name in zip(axes, ("peak friction (deg)", "axial strain at the peak (%)")):
         ends = [min(axis.get_xlim()[0], axis.get_ylim()[0]), max(axis.get_xlim()[1], axis.get_ylim()[1])]
         axis.plot(ends, ends, color=GREY, linewidth=0.8, zorder=0)
         axis.set(xlabel=f"laboratory: {name}", ylabel=f"packings: {name}")
-    axes[0].legend(loc="upper left")
+    legend_below(figure, axes[0], 0.08, 3)
     save(figure, path)
 
 
 def draw_slopes(members, box, path):
     """Displacement of the surface, and r_u at the depths: members grey, medians coloured."""
-    figure, axes = plt.subplots(1, 3, figsize=(7.2, 2.7), layout="constrained", gridspec_kw={"width_ratios": (1.2, 1, 1)})
+    figure, axes = plt.subplots(1, 3, figsize=(7.2, 2.7), layout="constrained")
     for letter, axis in zip("abc", axes):
         axis.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9)
         axis.set_xlabel("time (s)")
@@ -122,12 +129,17 @@ def draw_slopes(members, box, path):
     if box is not None:
         axes[0].plot(box["time"], 1e3 * box["surface_ux"], color=ORANGE, label="box of Iwan sand")
     axes[0].set_ylabel("surface downslope (mm)")
+    axes[0].set_ylim(top=1.4 * axes[0].get_ylim()[1])
     axes[0].legend(loc="upper left")
-    for k, axis in ((0, axes[1]), (3, axes[2])):
+    for k, axis, depth in ((0, axes[1], 1), (3, axes[2], 4)):
         for _, ru in members:
             axis.plot(TIMES, ru[:, k], color=GREY, linewidth=0.6, alpha=0.6)
         axis.plot(TIMES, np.median([ru[:, k] for _, ru in members], axis=0), color=BLUE)
-        axis.set_ylabel(f"$r_u$ at {DEPTHS[k]:g} m")
+        low, high = centrifuge()[depth]
+        axis.errorbar([13.7], [(low + high) / 2], [(high - low) / 2], fmt="k*", markersize=7, capsize=2, linewidth=0.8,
+                      label=f"centrifuge CU1, {depth} m")
+        axis.legend(loc="upper left")
+        axis.set(ylabel=f"$r_u$ at {DEPTHS[k]:g} m", ylim=(-0.05, 1.6))
     save(figure, path)
 
 

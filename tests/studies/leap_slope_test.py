@@ -43,5 +43,5 @@ class LeapSlope(ToleranceTest):
         friction, limit, misfit, tests = DRAINED.fit(strengths)
         self.assert_close(friction, known[0], 0.005, "steps of 0.05")
         self.assert_close(limit, known[1], 0.02, "steps of 0.7 %")
-        self.assertLess(misfit, 0.05)
+        self.assert_near(misfit, 0, 0.05, "deg, as steps are finite")
         self.assert_close(tests[0.604][2], DRAINED.PREPARATIONS[1], 1e-9, "rounding")
