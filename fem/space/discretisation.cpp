@@ -149,7 +149,6 @@ Discretisation<dim>::Discretisation(const MeshSpec &mesh, const Supports &suppor
         drained_pressures.push_back(cell_pressures[k]);
   sort_unique(fixed_dofs);
   sort_unique(drained_pressures);
-  cell_frequency_ = frequencies(*this);
 }
 
 template <int dim>
