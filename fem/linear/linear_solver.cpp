@@ -95,17 +95,26 @@ void check_options(PetscErrorCode code, const std::string &given, const std::str
 } // namespace
 
 LinearSolver::LinearSolver(MPI_Comm communicator, std::string prefix, const std::string &options, DirectSolver direct,
-                           std::function<void(KSP)> prepare)
+                           std::function<void(KSP)> prepare, const std::string &split_blocks)
     : parts_(new Parts{std::move(prefix), options, std::move(direct), std::move(prepare)})
 {
   parts_->is_checked = options.empty();
   petsc_check(PetscOptionsCreate(&parts_->options));
   petsc_check(PetscOptionsInsertString(parts_->options, options.c_str()));
+  if (splits())
+    petsc_check(PetscOptionsInsertString(parts_->options, (split_blocks + ' ' + options).c_str()));
   petsc_check(KSPCreate(communicator, &parts_->ksp));
 }
 
 LinearSolver::~LinearSolver() = default;
 LinearSolver::LinearSolver(LinearSolver &&) noexcept = default;
+
+bool LinearSolver::splits() const
+{
+  char type[16] = "";
+  petsc_check(PetscOptionsGetString(parts_->options, parts_->prefix.c_str(), "-pc_type", type, sizeof type, nullptr));
+  return std::string_view(type) == PCFIELDSPLIT;
+}
 
 /// LU unless the options say otherwise, GMRES if they name another preconditioner alone. A pivot is zero if it is 0,
 /// whatever its unit.
@@ -119,14 +128,14 @@ void LinearSolver::read_options()
   petsc_check(PetscOptionsHasName(p.options, p.prefix.c_str(), "-pc_type", &preconditions));
   petsc_check(KSPSetType(p.ksp, preconditions ? KSPGMRES : KSPPREONLY));
   petsc_check(KSPSetTolerances(p.ksp, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  petsc_check(PCSetType(pc, PCLU));
+  petsc_check(PCSetType(pc, splits() ? PCFIELDSPLIT : PCLU));
   petsc_check(PCFactorSetMatSolverType(pc, p.direct.package));
   petsc_check(PCFactorSetZeroPivot(pc, 0));
   if (p.direct.ordering)
     petsc_check(PCFactorSetMatOrderingType(pc, p.direct.ordering));
-  check_options(KSPSetFromOptions(p.ksp), p.given, p.prefix);
   if (p.prepare)
     p.prepare(p.ksp);
+  check_options(KSPSetFromOptions(p.ksp), p.given, p.prefix);
   KSPType method = nullptr;
   PCType preconditioner = nullptr;
   MatSolverType package = nullptr;
@@ -162,6 +171,7 @@ void LinearSolver::refuse_no_solution(const std::string &method, const std::stri
 /// Once, when all has been read: what PETSc reports of an iteration it is asked after the first one.
 void LinearSolver::refuse_unused()
 {
+  const Parts &p = *parts_;
   if (std::exchange(parts_->is_checked, true))
     return;
   PetscInt n = 0;
@@ -169,7 +179,7 @@ void LinearSolver::refuse_unused()
   petsc_check(PetscOptionsLeftGet(parts_->options, &n, &names, &values));
   std::string unused;
   for (PetscInt k = 0; k < n && unused.empty(); ++k)
-    if (std::string_view(names[k]).starts_with(parts_->prefix))
+    if (std::string_view(names[k]).starts_with(parts_->prefix) && p.given.find(names[k]) != std::string::npos)
       unused = names[k];
   petsc_check(PetscOptionsLeftRestore(parts_->options, &n, &names, &values));
   if (!unused.empty())

@@ -26,9 +26,10 @@ class LinearSolver
 {
 public:
   /// @param prefix   "water_": that of the system   @param options  of this and of other systems; empty: the direct one
-  /// @param prepare  called once, when the options have been read and before anything is set up; may be empty
+  /// @param prepare  called once, before the options are read; may be empty
+  /// @param split_blocks  options of a split (pc_type fieldsplit) that the user's replace
   LinearSolver(MPI_Comm communicator, std::string prefix, const std::string &options, DirectSolver direct,
-               std::function<void(KSP)> prepare = {});
+               std::function<void(KSP)> prepare = {}, const std::string &split_blocks = {});
   ~LinearSolver();
   LinearSolver(LinearSolver &&other) noexcept;
 
@@ -40,6 +41,7 @@ public:
   /// @throws RunFailure  the iteration has not converged: PETSc's reason (KSPConvergedReason), iterations, residual
   void solve(Vec in, Vec out);
 
+  bool splits() const; ///< pc_type fieldsplit
   const LinearEffort &effort() const { return effort_; }
 
 private:

@@ -35,11 +35,22 @@ struct PetscEntries
   void add(PetscInt row, PetscInt column, double value);
 };
 
-/// The sparse matrix of some entries; values of an entry that is named several times are added in that order. Keeps the
-/// pattern: MatSetValuesCOO() may give it other values.   @param n_rows, n_columns  owned by this rank   @param block
-/// rows that belong to one node, which solvers may make use of
-PetscMatrix petsc_matrix(MPI_Comm communicator, std::size_t n_rows, std::size_t n_columns, PetscEntries &entries,
-                         PetscInt block = 1);
+/// The sparse matrix of some entries; values of an entry that is named several times are added in that order.
+/// @param n_rows, n_columns  owned by this rank
+PetscMatrix petsc_matrix(MPI_Comm communicator, std::size_t n_rows, std::size_t n_columns, PetscEntries &entries);
+
+/// The pattern of a sparse matrix of dense blocks, one of each cell, and of its whole diagonal.
+class PetscPattern
+{
+public:
+  /// @param n_owned, block  rows of this rank; those that belong to one node
+  PetscPattern(MPI_Comm communicator, std::size_t n_owned, PetscInt block = 1);
+  void add(const std::vector<PetscInt> &rows); ///< and columns of a block
+  PetscMatrix matrix();                        ///< that takes these entries   Collective.
+
+private:
+  PetscMatrix pattern_, matrix_;
+};
 
 /// PETSc's name for the owned values of a Vector, without a copy.
 class PetscView

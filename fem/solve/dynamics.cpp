@@ -47,7 +47,8 @@ Dynamics::Dynamics(const FiniteElementSpace &space, Material &material, Dynamics
       total_ = stresses_;
     }
   if (settings_.large_strain)
-    deformed_ = Deformation{space_, space_, u_, space_.frequencies(space_)};
+    deformed_ = Deformation{space_, space_, u_};
+  frequencies_ = space_.frequencies(space_);
   choose_step();
   if (settings_.drainage == Drainage::coupled && space_.mesh().soil.permeability_varies())
     permeable_strains_.assign(space_.n_points(), 0.0);

@@ -164,10 +164,10 @@ private:
   struct Deformation
   {
     CellGeometry now, found;
-    Vector found_at;                 ///< displacement of `found`, m
-    std::vector<double> frequencies; ///< of those cells, for which pressure_system_ is, too
+    Vector found_at; ///< displacement of `found`, m
   };
   std::optional<Deformation> deformed_;
+  std::vector<double> frequencies_; ///< of the cells, where they are `found`; pressure_system_ is of them, too
 
   // constant
   Vector mass_, update_, keep_, damping_; ///< M, D, D (M/dt - C/2), C

@@ -55,7 +55,7 @@ void Dynamics::find_deformation()
 {
   deform(space_, deformed_->found_at, deformed_->found);
   deform(space_, u_, deformed_->now);
-  deformed_->frequencies = space_.frequencies(deformed_->found);
+  frequencies_ = space_.frequencies(deformed_->found);
 }
 
 /// The cells have gone on with u.

@@ -126,8 +126,7 @@ double Dynamics::stable_step() const
 {
   material_.wave_moduli(moduli_);
   const bool shear_only = settings_.drainage == Drainage::undrained;
-  const double largest = deformed_ ? space_.max_frequency_squared(deformed_->frequencies, moduli_, shear_only)
-                                   : space_.max_frequency_squared(moduli_, shear_only);
+  const double largest = space_.max_frequency_squared(frequencies_, moduli_, shear_only);
   return viscosity_ ? SkeletonViscosity::stable_step(largest, settings_.viscosity) : 2 / std::sqrt(largest);
 }
 

@@ -155,7 +155,6 @@ Discretisation<dim>::Discretisation(const MeshSpec &mesh, const Supports &suppor
   sort_unique(drained_pressures);
   if (!mesh_.refine.empty())
     share_out_masses();
-  cell_frequency_ = frequencies(*this);
 }
 
 template <int dim>

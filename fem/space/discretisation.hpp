@@ -68,12 +68,8 @@ public:
   /// Pressure at all points, Pa, 0 above the water table, whatever the ghosts of p hold.
   std::vector<double> point_pressures(const Vector &p) const;
   /// Bound of the largest omega^2 of the mesh, (rad/s)^2: the largest of any cell (Irons & Treharne 1971), for an
-  /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held in wet cells.   Cost: in the loop.
-  double max_frequency_squared(std::span<const WaveModuli> moduli, bool shear_only) const
-  {
-    return max_frequency_squared(cell_frequency_, moduli, shear_only);
-  }
-  /// The same of cells that have moved, with their frequencies().
+  /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held in wet cells.   @param frequencies  frequencies()
+  /// Cost: in the loop.
   double max_frequency_squared(std::span<const double> frequencies, std::span<const WaveModuli> moduli,
                                bool shear_only) const;
   /// omega^2 of each cell per Pa of wave modulus: cell_frequencies() over the density of its layer.
@@ -90,7 +86,6 @@ protected:
   bool shared_out_;
   MPI_Comm communicator_;
   VectorPartition displacements_, pressures_;
-  std::vector<double> cell_frequency_; ///< frequencies() of the start
 };
 
 template <int dim>

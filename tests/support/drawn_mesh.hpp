@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace isostat::test
@@ -78,7 +77,7 @@ std::string gmsh_text(std::array<unsigned, 3> n, const Move &move)
 inline std::shared_ptr<const GivenMesh> read_gmsh_text(const std::string &text, unsigned dimension,
                                                        const std::vector<std::string> &layers = {"soil"})
 {
-  std::string path = testing::TempDir() + "isostat_mesh_XXXXXX";
+  std::string path = std::filesystem::temp_directory_path() / "isostat_mesh_XXXXXX";
   close(mkstemp(path.data()));
   std::ofstream(path) << text;
   try

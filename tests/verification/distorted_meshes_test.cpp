@@ -2,7 +2,7 @@
 // Elements of any shape: orders of convergence, Cook's membrane, consolidation of Terzaghi and Cryer.
 #include "fem/material/elastic.hpp"
 #include "fem/solve/statics.hpp"
-#include "tests/support/drawn_mesh.hpp"
+#include "tests/support/cryers_sphere.hpp"
 #include "tests/support/near.hpp"
 
 #include <cmath>
@@ -157,108 +157,19 @@ TEST(DistortedMeshes, TerzaghisConsolidation)
     }
 }
 
-namespace
-{
-/// A sphere of 1 m under a pressure on its drained surface (Cryer 1963, Q. J. Mech. Appl. Math. 16, 401): in its middle
-///
-///     p/p_0 = sum_j eta (sin x - x) / [eta x cos(x)/2 + (eta - 1) sin x] exp(-x^2 c t)
-///     (1 - eta x^2/2) tan x = x                eta = (1 - nu)/(1 - 2 nu) (1 + K S)
-///
-/// (Verruijt 2013, Theory and Problems of Poroelasticity, section 3.3). An octant; n elements along each edge of a cube
-/// that is blown up to it, so that those at the edges of the cube are far from cubes.
-struct CryersSphere
-{
-  static MeshSpec octant(unsigned n, const std::vector<Refinement> &refine)
-  {
-    MeshSpec spec = test::soil_of(test::read_gmsh_text(
-        test::gmsh_text<3>({n, n, n},
-                           [](std::array<double, 3> at) {
-                             const double far = std::max({at[0], at[1], at[2]}), r = std::hypot(at[0], at[1], at[2]);
-                             for (double &x : at)
-                               x *= r > 0 ? far * far / r + 0.6 * (1 - far) : 0;
-                             return at;
-                           }),
-        3));
-    spec.soil.layers[0].porosity = 0.33;
-    spec.soil.layers[0].permeability = permeability;
-    spec.refine = refine;
-    return spec;
-  }
-  static Supports supports()
-  {
-    return {.fixed = {{Face::base, 2}, {Face::x_low, 0}, {Face::y_low, 1}},
-            .drained = {Face::surface, Face::x_high, Face::y_high}};
-  }
-  static StaticsSettings settings()
-  {
-    StaticsSettings settings;
-    settings.pore_water = true;
-    for (Face face : supports().drained)
-      settings.tractions.push_back({face, [](double, const Place &at) {
-                                      const double r = std::hypot(at[0], at[1], at[2]);
-                                      return Place{-load * at[0] / r, -load * at[1] / r, -load * at[2] / r};
-                                    }});
-    return settings;
-  }
-  explicit CryersSphere(unsigned n, const std::vector<Refinement> &refine = {})
-      : space(octant(n, refine), supports()), soil(elastic, space.n_points()), statics(space, soil, settings())
-  {
-    const double k = elastic.bulk_modulus(), g = elastic.shear_modulus;
-    const Water &water = space.mesh().soil.water;
-    const double storage = 0.33 / water.bulk_modulus, m = 1 / (k + 4 * g / 3);
-    at_once = load / (1 + k * storage);
-    eta = (1 + k * storage) / (2 * g * m);
-    seconds = (m + storage) / water.mobility(permeability);
-  }
-  double exact(double t) const
-  {
-    const auto f = [this](double x) { return (1 - eta * x * x / 2) * std::sin(x) - x * std::cos(x); };
-    double sum = 0;
-    for (int j = 1; j < 60; ++j) // one root in each interval
-      {
-        double low = (j - 0.5) * std::numbers::pi, high = (j + 0.5) * std::numbers::pi;
-        const bool rises = f(low) < 0;
-        for (int k = 0; k < 80; ++k)
-          ((f((low + high) / 2) < 0) == rises ? low : high) = (low + high) / 2;
-        sum += eta * (std::sin(low) - low) / (eta * low * std::cos(low) / 2 + (eta - 1) * std::sin(low)) *
-               std::exp(-low * low * t);
-      }
-    return sum;
-  }
-  /// Largest error of the pressure in the middle, and its peak, from t = 0.1 to 0.4.
-  std::array<double, 2> error_and_peak()
-  {
-    statics.step_undrained();
-    const auto middle = static_cast<unsigned>(space.find_pressure({0, 0, 0}));
-    std::array<double, 2> found = {};
-    for (int k = 1; k <= 40; ++k)
-      {
-        statics.step(0.01 * seconds);
-        const double p = statics.pressure().local_element(middle) / at_once;
-        found[1] = std::max(found[1], p);
-        if (k >= 10)
-          found[0] = std::max(found[0], std::abs(p - exact(0.01 * k)));
-      }
-    return found;
-  }
-
-  static constexpr double load = 1e4, permeability = 1e-8;
-  static constexpr ElasticParameters elastic{.shear_modulus = 5e6, .poisson_ratio = 0.1};
-  Discretisation<3> space;
-  Elastic soil;
-  Statics statics;
-  double at_once, eta, seconds;
-};
-} // namespace
-
 TEST(DistortedMeshes, CryersSphere)
 {
-  const auto [coarse, coarse_peak] = CryersSphere(2).error_and_peak();
-  const auto [fine, peak] = CryersSphere(4).error_and_peak();
-  EXPECT_NEAR_BECAUSE(peak, 1.472, 0.12, "the series has its peak at 0.06, when water comes from half of an element");
-  EXPECT_BELOW_BECAUSE(fine, 0.06, "4 elements along the radius");
-  EXPECT_NEAR_BECAUSE(std::log2(coarse / fine), 2, 0.5, "linear pressure, sides that are straight");
-  const auto [core, core_peak] = CryersSphere(2, {{{0, 0, 0}, {0.5, 0.5, 0.5}, 1}}).error_and_peak();
-  EXPECT_BELOW_BECAUSE(core / coarse, 1, "one of eight elements is halved, that in the middle");
+  const auto found = [](unsigned n) { return test::CryersSphere(n, {}, MPI_COMM_SELF, 0.3).error_and_peak(); };
+  constexpr double exact_peak = 1.472; // of the series, at t = 0.06
+  const auto [coarse, coarse_peak] = found(2);
+  const auto [fine, peak] = found(3);
+  EXPECT_BELOW_BECAUSE(fine, 0.04, "6 elements along the radius, whose pressure is linear");
+  EXPECT_LT(fine, coarse / 1.5);
+  EXPECT_NEAR_BECAUSE(peak, exact_peak, 0.05, "6 elements along the radius, whose pressure is linear");
+  EXPECT_NEAR_BECAUSE(std::log((coarse_peak - exact_peak) / (peak - exact_peak)) / std::log(1.5), 2, 0.4,
+                      "linear pressure, and steps of 0.02 on both meshes");
+  const auto [core, core_peak] =
+      test::CryersSphere(2, {}, MPI_COMM_SELF, 0.3, {{{0, 0, 0}, {0.4, 0.4, 0.4}, 1}}).error_and_peak();
+  EXPECT_BELOW_BECAUSE(core / coarse, 1, "elements in the middle are halved");
 }
 } // namespace isostat

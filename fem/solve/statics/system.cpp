@@ -25,6 +25,32 @@ void strain_matrix(const CellTables &t, std::size_t point, Eigen::Matrix<double,
       b.middleCols<3>(3 * a) << g[0], 0, 0, 0, g[1], 0, 0, 0, g[2], 0, g[2], g[1], g[2], 0, g[0], g[1], g[0], 0;
     }
 }
+
+/// Ends the assembly of a matrix and removes held rows and columns from it.   @return these columns, as they were
+PetscMatrix assembled(Mat matrix, const std::vector<PetscInt> &held, double diagonal)
+{
+  MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
+  petsc_check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  petsc_check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  petsc_check(MatSetOption(matrix, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  PetscInt first = 0, end = 0;
+  IS rows = nullptr, columns = nullptr;
+  Mat removed = nullptr;
+  petsc_check(MatGetOwnershipRange(matrix, &first, &end));
+  petsc_check(ISCreateStride(communicator, end - first, first, 1, &rows));
+  petsc_check(
+      ISCreateGeneral(communicator, static_cast<PetscInt>(held.size()), held.data(), PETSC_USE_POINTER, &columns));
+  petsc_check(MatCreateSubMatrix(matrix, rows, columns, MAT_INITIAL_MATRIX, &removed));
+  petsc_check(ISDestroy(&rows));
+  petsc_check(ISDestroy(&columns));
+  petsc_check(MatZeroRowsColumns(matrix, static_cast<PetscInt>(held.size()), held.data(), diagonal, nullptr, nullptr));
+  return PetscMatrix(removed);
+}
+
+/// Options of the blocks of a split where the user gives no others.
+constexpr const char *split_blocks =
+    "-statics_fieldsplit_u_ksp_type gmres -statics_fieldsplit_u_ksp_rtol 1e-2 -statics_fieldsplit_u_pc_type gamg "
+    "-statics_fieldsplit_p_ksp_type preonly -statics_fieldsplit_p_pc_type hypre";
 } // namespace
 
 struct StaticsSystem::Matrices
@@ -38,13 +64,14 @@ struct StaticsSystem::Matrices
   {
     return i < n_u ? x.u.local_element(i) : x.p.local_element(i - n_u);
   }
+  std::vector<PetscInt> of_schur;     ///< number among pressures alone, likewise
   std::vector<unsigned> unused, held; ///< owned rows that no cell has; held ones
   const BiotOperator *water = nullptr;
-  std::vector<double> values;            ///< entries in the order of preallocate()
   std::vector<Stiffness> known_tangents; ///< that the factor is of
   double known_theta = -1;
-  PetscMatrix whole, with_held; ///< of all unknowns; held rows and columns removed
-  PetscVector in, out;
+  PetscMatrix matrix, of_held; ///< held rows and columns removed; the columns that it had
+  PetscMatrix schur;           ///< (16a), for a split; else none
+  PetscVector in, out, held_in;
   PetscNullSpace motions;
   std::unique_ptr<LinearSolver> solver;
 };
@@ -62,16 +89,16 @@ StaticsSystem::StaticsSystem(const FiniteElementSpace &space, const BiotOperator
   space.sum_over_ranks(size);
   m.cell_size = std::pow(size[0] / size[1], 1.0 / space.dimension);
   number_unknowns();
+  // MUMPS: no permutation by values, scaling found at each factorisation, per cent of spare room for pivots. Its
+  // analysis does not look at values: a resumed run has the same pivots.
+  m.solver = std::make_unique<LinearSolver>(
+      space.communicator(), "statics_", options, DirectSolver{MATSOLVERMUMPS, nullptr, {{6, 0}, {8, 7}, {14, 60}}},
+      [this](KSP ksp) { tell_structure(ksp); }, split_blocks);
   const bool tells_blocks = !options.empty() && !water;
   preallocate(tells_blocks ? 3 : 1);
   hold({}, {});
-  // MUMPS: no permutation by values, scaling found at each factorisation, per cent of spare room for pivots. Its
-  // analysis does not look at values: a resumed run has the same pivots.
-  m.solver = std::make_unique<LinearSolver>(space.communicator(), "statics_", options,
-                                            DirectSolver{MATSOLVERMUMPS, nullptr, {{6, 0}, {8, 7}, {14, 60}}},
-                                            [this](KSP ksp) { tell_structure(ksp); });
   if (tells_blocks && space.dimension > 1)
-    petsc_check(MatSetNearNullSpace(m.with_held.get(), rigid_motions()));
+    petsc_check(MatSetNearNullSpace(m.matrix.get(), rigid_motions()));
 }
 
 StaticsSystem::~StaticsSystem() = default;
@@ -95,6 +122,9 @@ void StaticsSystem::number_unknowns()
   };
   number(u, m.n_u, first, m.of_u);
   number(p, m.n_p, first + m.n_u, m.of_p);
+  mine = m.n_p, first = 0;
+  MPI_Exscan(&mine, &first, 1, MPIU_INT, MPI_SUM, space_.communicator());
+  number(p, m.n_p, first, m.of_schur);
   const auto find_unused = [&](Vector uses, const std::vector<unsigned> &of_cells, std::size_t n, unsigned start) {
     for (unsigned i : of_cells)
       uses.local_element(i) = 1;
@@ -112,39 +142,40 @@ void StaticsSystem::number_unknowns()
   find_unused(space_.pressure_vector(), wet, m.n_p, m.n_u);
 }
 
-/// Entries cell by cell, row by row, then the whole diagonal.
+/// Rows that a cell has, and those of its pressures in (16a).
+void StaticsSystem::rows_of(std::size_t cell, std::vector<PetscInt> &rows, std::vector<PetscInt> &schur) const
+{
+  const Matrices &m = *matrices_;
+  const std::size_t n_u = 3 * space_.n_nodes, n_i = m.water ? space_.pressure_nodes_per_cell() : 0;
+  rows.resize(n_u + n_i);
+  schur.resize(n_i);
+  for (std::size_t k = 0; k < n_u; ++k)
+    rows[k] = m.of_u[space_.cell_dofs[cell * n_u + k]];
+  for (std::size_t k = 0; k < n_i; ++k)
+    {
+      rows[n_u + k] = m.of_p[space_.cell_pressures[cell * n_i + k]];
+      schur[k] = m.of_schur[space_.cell_pressures[cell * n_i + k]];
+    }
+}
+
 void StaticsSystem::preallocate(int block)
 {
   Matrices &m = *matrices_;
-  const std::size_t n_u = 3 * space_.n_nodes, n_i = m.water ? space_.pressure_nodes_per_cell() : 0;
-  PetscEntries entries;
-  std::vector<PetscInt> cell_rows(n_u + n_i);
+  const bool splits = m.water && m.solver->splits();
+  PetscPattern whole(space_.communicator(), m.n_u + m.n_p, block), schur(space_.communicator(), m.n_p);
+  std::vector<PetscInt> rows, of_schur;
   for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)
     {
-      for (std::size_t k = 0; k < n_u; ++k)
-        cell_rows[k] = m.of_u[space_.cell_dofs[cell * n_u + k]];
-      for (std::size_t k = 0; k < n_i; ++k)
-        cell_rows[n_u + k] = m.of_p[space_.cell_pressures[cell * n_i + k]];
-      for (PetscInt row : cell_rows)
-        {
-          entries.rows.insert(entries.rows.end(), cell_rows.size(), row);
-          entries.columns.insert(entries.columns.end(), cell_rows.begin(), cell_rows.end());
-        }
+      rows_of(cell, rows, of_schur);
+      whole.add(rows);
+      if (splits)
+        schur.add(of_schur);
     }
-  for (std::size_t i = 0; i < m.n_u + m.n_p; ++i)
-    {
-      entries.rows.push_back(m.row(i));
-      entries.columns.push_back(entries.rows.back());
-    }
-  m.values.assign(entries.rows.size(), 0.0);
-  entries.values = m.values;
-  m.whole = petsc_matrix(space_.communicator(), m.n_u + m.n_p, m.n_u + m.n_p, entries, block);
-  Mat copy = nullptr;
-  petsc_check(MatDuplicate(m.whole.get(), MAT_DO_NOT_COPY_VALUES, &copy));
-  m.with_held.reset(copy);
-  petsc_check(MatSetOption(copy, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  m.matrix = whole.matrix();
+  if (splits)
+    m.schur = schur.matrix();
   Vec in = nullptr, out = nullptr;
-  petsc_check(MatCreateVecs(m.whole.get(), &in, &out));
+  petsc_check(MatCreateVecs(m.matrix.get(), &in, &out));
   m.in.reset(in);
   m.out.reset(out);
 }
@@ -187,42 +218,64 @@ void StaticsSystem::assemble(std::span<const Stiffness> tangents, double theta)
 {
   Matrices &m = *matrices_;
   const std::size_t n_u = 3 * space_.n_nodes, n_q = space_.points_per_cell();
-  const std::size_t n = n_u + (m.water ? space_.pressure_nodes_per_cell() : 0);
+  const std::size_t n_i = m.water ? space_.pressure_nodes_per_cell() : 0, n = n_u + n_i;
+  using RowByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::Matrix<double, 6, Eigen::Dynamic> b(6, n_u);
-  Eigen::MatrixXd k(n, n);
+  RowByRow k(n, n), schur(n_i, n_i);
+  std::vector<PetscInt> rows, of_schur;
+  petsc_check(MatZeroEntries(m.matrix.get()));
+  if (m.schur)
+    petsc_check(MatZeroEntries(m.schur.get()));
   for (std::size_t cell = 0; cell < space_.n_cells(); ++cell)
     {
       k.setZero();
+      schur.setZero();
       for (std::size_t q = cell * n_q; q < (cell + 1) * n_q; ++q)
         {
           strain_matrix(space_, q, b); // K of (16): int B^T C B
           k.topLeftCorner(n_u, n_u) += space_.weight[q] * b.transpose() * (tangents[q] * b);
+          if (m.schur) // M_p of (16a)
+            {
+              const Eigen::Map<const Eigen::VectorXd> shape(&space_.pressure_shape[q % n_q * n_i], n_i);
+              const double modulus = std::max(tangents[q].topLeftCorner<3, 3>().trace() / 3, 1e-3 * m.pressure_scale);
+              schur += space_.weight[q] / modulus * shape * shape.transpose();
+            }
         }
       if (m.water) // -G, -G^T, -(S + theta H), pressures in units of the scale
         {
           const BiotCell &water = m.water->cell(cell);
           const double scale = m.pressure_scale;
-          k.bottomLeftCorner(n - n_u, n_u) = -scale * water.g;
-          k.topRightCorner(n_u, n - n_u) = -scale * water.g.transpose();
-          k.bottomRightCorner(n - n_u, n - n_u) = -scale * scale * (water.s + theta * water.h);
+          k.bottomLeftCorner(n_i, n_u) = -scale * water.g;
+          k.topRightCorner(n_u, n_i) = -scale * water.g.transpose();
+          k.bottomRightCorner(n_i, n_i) = -scale * scale * (water.s + theta * water.h);
+          schur = k.bottomRightCorner(n_i, n_i) - scale * scale * schur; // (16a)
         }
-      Eigen::Map<Eigen::MatrixXd>(&m.values[cell * n * n], n, n) = k.transpose(); // row by row
+      rows_of(cell, rows, of_schur);
+      petsc_check(MatSetValues(m.matrix.get(), n, rows.data(), n, rows.data(), k.data(), ADD_VALUES));
+      if (m.schur)
+        petsc_check(MatSetValues(m.schur.get(), n_i, of_schur.data(), n_i, of_schur.data(), schur.data(), ADD_VALUES));
     }
-  petsc_check(MatSetValuesCOO(m.whole.get(), m.values.data(), INSERT_VALUES));
-  petsc_check(MatCopy(m.whole.get(), m.with_held.get(), SAME_NONZERO_PATTERN));
 }
 
 void StaticsSystem::factorise()
 {
   Matrices &m = *matrices_;
-  std::vector<PetscInt> rows;
+  std::vector<PetscInt> rows, of_schur;
   for (unsigned i : m.held)
-    rows.push_back(m.row(i));
-  Mat matrix = m.with_held.get();
-  petsc_check(MatZeroRowsColumns(matrix, rows.size(), rows.data(), m.pressure_scale, nullptr, nullptr));
+    {
+      rows.push_back(m.row(i));
+      if (i >= m.n_u)
+        of_schur.push_back(m.of_schur[i - m.n_u]);
+    }
+  m.of_held = assembled(m.matrix.get(), rows, m.pressure_scale);
+  Vec held_in = nullptr;
+  petsc_check(MatCreateVecs(m.of_held.get(), &held_in, nullptr));
+  m.held_in.reset(held_in);
+  if (m.schur)
+    assembled(m.schur.get(), of_schur, m.pressure_scale);
   try
     {
-      m.solver->set_matrix(matrix);
+      m.solver->set_matrix(m.matrix.get());
     }
   catch (const RunFailure &failure)
     {
@@ -231,15 +284,20 @@ void StaticsSystem::factorise()
     }
 }
 
-/// Displacements and pressures by name, for -statics_pc_type fieldsplit; the matrix of displacements gets from their
-/// name what it has without pressures.
+/// For -statics_pc_type fieldsplit: displacements and pressures by name, (16a), and what the user's options may replace.
+/// The matrix of displacements gets from their name what it has without pressures.
 void StaticsSystem::tell_structure(KSP ksp) const
 {
   const Matrices &m = *matrices_;
-  if (m.n_p == 0)
+  if (!m.schur)
     return;
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp, &pc));
+  petsc_check(KSPSetType(ksp, KSPFGMRES));
+  petsc_check(KSPGMRESSetRestart(ksp, 100));
+  petsc_check(PCFieldSplitSetType(pc, PC_COMPOSITE_SCHUR));
+  petsc_check(PCFieldSplitSetSchurFactType(pc, PC_FIELDSPLIT_SCHUR_FACT_UPPER));
+  petsc_check(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_USER, m.schur.get()));
   for (const auto &[name, n, start] : {std::tuple{"u", m.n_u, m.of_u.front()}, {"p", m.n_p, m.of_p.front()}})
     {
       IS rows = nullptr;
@@ -302,16 +360,18 @@ void StaticsSystem::solve(const MixedVector &residual, MixedVector &step, MixedV
 {
   const Matrices &m = *matrices_;
   const double scale = m.pressure_scale;
-  MixedVector given(space_), rhs = residual;
+  MixedVector rhs = residual;
+  double *held = nullptr;
+  petsc_check(VecGetArrayWrite(m.held_in.get(), &held));
   for (unsigned i : m.held) // the residual loses what the held increments alone make: A x_held
-    m.entry(given, i) = m.entry(step, i);
-  load(given, 1 / scale);
-  petsc_check(MatMult(m.whole.get(), m.in.get(), m.out.get()));
+    *held++ = m.entry(step, i) / (i < m.n_u ? 1 : scale);
+  petsc_check(VecRestoreArrayWrite(m.held_in.get(), nullptr));
+  petsc_check(MatMult(m.of_held.get(), m.held_in.get(), m.out.get()));
   unload(moved, 1 / scale);
   rhs.u -= moved.u;
   rhs.p -= moved.p;
   for (unsigned i : m.held) // their rows say: scale x = scale given
-    m.entry(rhs, i) = m.entry(given, i) * (i < m.n_u ? scale : 1 / scale);
+    m.entry(rhs, i) = m.entry(step, i) * (i < m.n_u ? scale : 1 / scale);
   load(rhs, scale);
   m.solver->solve(m.in.get(), m.out.get());
   unload(step, scale);

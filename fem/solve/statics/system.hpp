@@ -16,7 +16,8 @@ namespace isostat
 ///
 /// without the second row if there is no pore water. Pressures are scaled by a modulus, so that both rows are of one
 /// size. Assembled by PETSc, factorised by MUMPS (LU: the tangent of a soil need not be symmetric) on any number of
-/// ranks unless options that begin with -statics_ say otherwise (LinearSolver). Held unknowns take given increments.
+/// ranks unless options that begin with -statics_ say otherwise (LinearSolver); a split of displacements and pressures
+/// has (16a) in place of the Schur complement. Held unknowns take given increments.
 /// The factor is kept as long as tangent, theta and held unknowns are the same numbers.
 /// tested: tests/fem/solve/statics_test.cpp
 class StaticsSystem
@@ -45,6 +46,7 @@ public:
 private:
   struct Matrices;
   void number_unknowns();
+  void rows_of(std::size_t cell, std::vector<int> &rows, std::vector<int> &schur) const;
   void preallocate(int block);
   void assemble(std::span<const Stiffness> tangents, double theta);
   void factorise();
