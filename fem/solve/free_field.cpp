@@ -135,15 +135,15 @@ void FreeField::add_inflow(Vector &inflow) const
   Vector flow = space_->pressure_vector();
   for (std::size_t q = 0; q < space_->n_points(); ++q)
     {
-      const std::size_t cell = q / space_->n_gauss, gauss = q % space_->n_gauss;
+      const std::size_t cell = q / space_->n_gauss;
       double acceleration = of_base;
       for (std::size_t a = 0; a < space_->n_nodes; ++a)
-        acceleration += space_->shape[gauss * space_->n_nodes + a] *
-                        column_.acceleration(space_->cell_dofs[(cell * space_->n_nodes + a) * 3]);
+        acceleration +=
+            space_->shapes(q)[a] * column_.acceleration(space_->cell_dofs[(cell * space_->n_nodes + a) * 3]);
       for (std::size_t i = 0; i < n_i && space_->cell_is_wet[cell]; ++i)
         flow.local_element(space_->cell_pressures[cell * n_i + i]) += space_->weight[q] * points.mobility[q] *
                                                                       points.fluid_density * acceleration *
-                                                                      space_->pressure_shape[gauss * n_i + i];
+                                                                      space_->pressure_shapes(q)[i];
     }
   for (const auto &[i, k] : corners_)
     inflow.local_element(i) += (side_ == Face::x_low ? -1 : 1) * flow.local_element(k);
