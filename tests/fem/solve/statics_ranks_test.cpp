@@ -141,10 +141,10 @@ TEST(StaticsRanks, SharedOutIsTheSame)
   MeshSpec refined = Footing<2>::mesh();
   refined.refine = {{{0.4, 0, 0.6}, {2, 0, 2}, 2}};
   compare<2>(false, refined);
-  refined.refine.push_back({{-1, 0, 0}, {9, 0, 0.6}, 1}); // alike at both sides
+  refined.refine.push_back({{-1, 0, 0}, {9, 0, 2}, 1}); // alike at both sides
   compare<2>(true, refined);
   refined = Footing<3>::mesh();
-  refined.refine = {{{0, 0, 0.6}, {2, 2, 2}, 1}};
+  refined.refine = {{{0.8, 0, 0.6}, {2.2, 2, 1.4}, 1}};
   compare<3>(false, refined);
 }
 
