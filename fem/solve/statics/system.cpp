@@ -236,7 +236,7 @@ void StaticsSystem::assemble(std::span<const Stiffness> tangents, double theta)
           k.topLeftCorner(n_u, n_u) += space_.weight[q] * b.transpose() * (tangents[q] * b);
           if (m.schur) // M_p of (16a)
             {
-              const Eigen::Map<const Eigen::VectorXd> shape(&space_.pressure_shape[q % n_q * n_i], n_i);
+              const Eigen::Map<const Eigen::VectorXd> shape(space_.pressure_shapes(q), n_i);
               const double modulus = std::max(tangents[q].topLeftCorner<3, 3>().trace() / 3, 1e-3 * m.pressure_scale);
               schur += space_.weight[q] / modulus * shape * shape.transpose();
             }

@@ -192,7 +192,7 @@ double bound_over_exact(const FiniteElementSpace &space, double poisson)
   Elastic soil({5e7, poisson}, space.n_points());
   std::vector<WaveModuli> moduli(space.n_points());
   soil.wave_moduli(moduli);
-  return std::sqrt(space.max_frequency_squared(moduli, false) / omega_squared(space, soil));
+  return std::sqrt(space.max_frequency_squared(space.frequencies(space), moduli, false) / omega_squared(space, soil));
 }
 } // namespace
 
