@@ -76,7 +76,7 @@ void RveMaterial::make(const std::function<Rve(std::size_t)> &maker)
 {
   batch_.make(maker);
   waves_.clear();
-  skeleton_.clear();
+  tangents_.clear();
 }
 
 InSituStart RveMaterial::in_situ_start(const InSituCache &cache, std::span<const Stress> effective) const
@@ -165,7 +165,7 @@ void RveMaterial::trial(std::span<const Gradient> increments, std::span<Stress> 
                                  stresses.size(), n_points()));
   const Stopwatch watch;
   std::ranges::copy(increments, increments_.begin());
-  skeleton_.clear();
+  tangents_.clear();
   batch_.trial(increments);
   points().mean(batch_.trial_stress(), stresses);
   count_trial();
@@ -197,7 +197,7 @@ void RveMaterial::commit()
 void RveMaterial::rollback()
 {
   if (batch_.has_trial())
-    skeleton_.clear();
+    tangents_.clear();
   batch_.rollback();
 }
 
@@ -207,32 +207,27 @@ const Rve *RveMaterial::element(std::size_t point, std::size_t realisation) cons
   return element ? &element->rve() : nullptr;
 }
 
-const std::vector<Stiffness> &RveMaterial::skeleton() const
+const std::vector<Stiffness> &RveMaterial::element_tangents() const
 {
   batch_.check_made();
-  if (!skeleton_.empty())
-    return skeleton_;
+  if (!tangents_.empty())
+    return tangents_;
   const TimedScope timed(cost_.wave_seconds);
   std::vector<std::array<double, 36>> rows(batch_.size());
   batch_.for_each([&](std::size_t id) {
     Eigen::Map<Stiffness> row(rows[id].data());
-    row = batch_.element(id)->rve().stiffness();
+    row = batch_.element(id)->rve().stiffness(Sliding::plastic);
   });
   batch_.share(std::span(rows));
   for (const auto &row : rows)
-    skeleton_.emplace_back(Eigen::Map<const Stiffness>(row.data()));
+    tangents_.emplace_back(Eigen::Map<const Stiffness>(row.data()));
   cost_.stiffnesses += rows.size();
-  return skeleton_;
-}
-
-void RveMaterial::skeleton_stiffness(std::span<Stiffness> stiffnesses) const
-{
-  points().mean(std::span(skeleton()), stiffnesses);
+  return tangents_;
 }
 
 void RveMaterial::stiffness(std::span<Stiffness> tangents) const
 {
-  skeleton_stiffness(tangents);
+  points().mean(std::span(element_tangents()), tangents);
   if (settings_.undrained)
     for (Stiffness &c : tangents)
       c = (c * deviator()).eval();

@@ -54,13 +54,11 @@ public:
   void commit() override;
   void rollback() override;
 
-  /// Mean of the elements' derivatives of stress by strain from their condensed stiffness C (contacts that yield count
-  /// as elastic): C, or undrained C (1 - m m^T/3), m = (1 1 1 0 0 0), which is not symmetric.
-  /// cost some 0.15 s for each 1,000 grains; once for each state
+  /// Mean of the elements' derivatives of stress by strain C in continued loading (Sliding::plastic), or undrained
+  /// C (1 - m m^T/3), m = (1 1 1 0 0 0); not symmetric. Of the last trial, else of the committed state.
+  /// cost some 0.3 s for each 1,000 grains; once for each state
   void stiffness(std::span<Stiffness> tangents) const override;
-  /// C of the skeleton, whether undrained or not: symmetric.
-  void skeleton_stiffness(std::span<Stiffness> stiffnesses) const;
-  /// From C, see WaveModuliCache. cost when computed again that of stiffness()
+  /// From the elastic stiffness, see WaveModuliCache. cost when computed again about that of stiffness()
   void wave_moduli(std::span<WaveModuli> moduli) const override;
 
   /// The same bytes for any number of ranks and threads, on every rank.
@@ -101,7 +99,7 @@ private:
   InSituStart in_situ_start(const InSituCache &cache, std::span<const Stress> effective) const;
   std::vector<bool> most_sheared(std::span<const Stress> effective) const;
   void count_trial();
-  const std::vector<Stiffness> &skeleton() const;
+  const std::vector<Stiffness> &element_tangents() const;
   void refresh_waves() const;
 
   RveMaterialSettings settings_;
@@ -110,7 +108,7 @@ private:
   std::vector<Gradient> increments_;      ///< of each point in the last trial
   CostMeter meter_;
   mutable WaveModuliCache waves_;
-  mutable std::vector<Stiffness> skeleton_; ///< of each element at the last trial; empty: not computed yet
+  mutable std::vector<Stiffness> tangents_; ///< of each element at the last trial; empty: not computed yet
   mutable RveMaterialCost cost_;
 };
 } // namespace isostat

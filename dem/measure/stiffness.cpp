@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 
 #include <algorithm>
 #include <array>
@@ -17,6 +18,8 @@ namespace isostat
 namespace
 {
 constexpr double regularisation = 1e-10; ///< of the largest diagonal entry
+/// Share of a limit by which contacts that continue to yield may be below it: that of forces in balance, BalanceSpec.
+constexpr double near_limit = 0.01;
 
 using Mat3x6 = Eigen::Matrix<double, 3, 6>;
 using Mat6x12 = Eigen::Matrix<double, 6, 12>;
@@ -31,26 +34,29 @@ struct Element
   std::uint32_t first, second;
   Vec3 normal;
   double radius1, radius2, branch; ///< m
-  ContactStiffness k;              ///< yielding and alpha accounted for
+  ContactStiffness k;              ///< alpha accounted for
+  Vec3 sliding, rolling;           ///< fs/fn and mb/fn (m) of a contact that continues to yield; else 0
 
   double arm_ratio() const { return branch / (radius1 + radius2); }
+  bool is_elastic() const { return sliding.isZero(0) && rolling.isZero(0); }
 };
 
 Element element(const Snapshot &snapshot, const Contact &c, Sliding sliding)
 {
   const double r1 = snapshot.grains.radius(c.first), r2 = snapshot.grains.radius(c.second);
   ContactStiffness k = snapshot.law->stiffness(r1, r2, c.overlap);
-  if (sliding == Sliding::released)
-    {
-      const YieldState yield = snapshot.law->yield(snapshot.closed(c), yield_round_off);
-      if (yield.sliding)
-        k.shear = 0;
-      if (yield.rolling)
-        k.rolling = 0;
-    }
   const double branch = r1 + r2 - c.overlap;
   k.shear *= (r1 + r2) / branch;
-  return {c.first, c.second, c.history.normal, r1, r2, branch, k};
+  Element e{c.first, c.second, c.history.normal, r1, r2, branch, k, Vec3::Zero(), Vec3::Zero()};
+  if (sliding == Sliding::plastic)
+    {
+      const YieldState yield = snapshot.law->yield(snapshot.closed(c), near_limit);
+      if (yield.sliding)
+        e.sliding = c.history.shear_force / c.normal_force;
+      if (yield.rolling)
+        e.rolling = c.history.bending_moment / c.normal_force;
+    }
+  return e;
 }
 
 std::vector<Element> elements_of(const Snapshot &snapshot, Sliding sliding)
@@ -81,6 +87,15 @@ Mat6 rigidity(const Element &e)
   Mat6 d = Mat6::Zero();
   d.topLeftCorner<3, 3>() = e.k.normal * nn + e.k.shear * tangential;
   d.bottomRightCorner<3, 3>() = e.k.rolling * tangential + e.k.twisting * nn;
+  const auto yield = [&](int row, const Vec3 &limit, double k) {
+    if (limit.isZero(0))
+      return;
+    const Vec3 along = limit.normalized();
+    d.block<3, 3>(row, row) -= k * along * along.transpose();
+    d.block<3, 3>(row, 0) += e.k.normal * limit * e.normal.transpose(); // dfn = -kn n.v
+  };
+  yield(0, e.sliding, e.k.shear);
+  yield(3, e.rolling, e.k.rolling);
   return d;
 }
 
@@ -174,8 +189,8 @@ private:
   int count_ = 0;
 };
 
-/// K_uu, lower triangle, regularised.
-SparseMatrix network_stiffness(const std::vector<Element> &elements, const Unknowns &unknowns)
+/// K_uu, regularised, of elastic elements the lower triangle.
+SparseMatrix network_stiffness(const std::vector<Element> &elements, const Unknowns &unknowns, Sliding sliding)
 {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(78 * elements.size() + unknowns.count());
@@ -186,7 +201,7 @@ SparseMatrix network_stiffness(const std::vector<Element> &elements, const Unkno
       const std::array<int, 12> at = unknowns.of(e);
       for (int i = 0; i < 12; ++i)
         for (int j = 0; j < 12; ++j)
-          if (at[j] >= 0 && at[i] >= at[j])
+          if (at[j] >= 0 && at[i] >= (sliding == Sliding::elastic ? at[j] : 0))
             entries.emplace_back(at[i], at[j], k(i, j));
     }
   SparseMatrix matrix(unknowns.count(), unknowns.count());
@@ -196,8 +211,26 @@ SparseMatrix network_stiffness(const std::vector<Element> &elements, const Unkno
   return matrix;
 }
 
+template <typename Iteration, typename Factors>
+Eigen::MatrixXd solved(const SparseMatrix &network, const Eigen::MatrixXd &load)
+{
+  if (network.rows() > most_factorised)
+    {
+      // elastic stiffness is evaluated as energy: what remains of the residual enters squared
+      Iteration iteration(network);
+      iteration.setTolerance(1e-8);
+      Eigen::MatrixXd motion = iteration.solve(load);
+      if (iteration.info() == Eigen::Success)
+        return motion;
+    }
+  const Factors factors(network);
+  if (factors.info() != Eigen::Success)
+    throw RunFailure("stiffness: the stiffness matrix of the contact network cannot be factorised");
+  return factors.solve(load);
+}
+
 /// The displacements and rotations per unit of each mean strain, -K_uu^-1 K_ue.
-Eigen::MatrixXd fluctuations(const std::vector<Element> &elements, const Unknowns &unknowns)
+Eigen::MatrixXd fluctuations(const std::vector<Element> &elements, const Unknowns &unknowns, Sliding sliding)
 {
   Eigen::MatrixXd load = Eigen::MatrixXd::Zero(unknowns.count(), 6);
   if (unknowns.count() == 0)
@@ -210,20 +243,11 @@ Eigen::MatrixXd fluctuations(const std::vector<Element> &elements, const Unknown
         if (at[i] >= 0)
           load.row(at[i]) -= share.row(i);
     }
-  const SparseMatrix network = network_stiffness(elements, unknowns);
-  if (unknowns.count() > most_factorised)
-    {
-      // stiffness is evaluated as energy: what remains of the residual enters squared
-      Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> iteration(network);
-      iteration.setTolerance(1e-8);
-      Eigen::MatrixXd motion = iteration.solve(load);
-      if (iteration.info() == Eigen::Success)
-        return motion;
-    }
-  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> factors(network);
-  if (factors.info() != Eigen::Success)
-    throw RunFailure("elastic stiffness: the stiffness matrix of the contact network cannot be factorised");
-  return factors.solve(load);
+  const SparseMatrix network = network_stiffness(elements, unknowns, sliding);
+  if (sliding == Sliding::elastic)
+    return solved<Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower>,
+                  Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>>(network, load);
+  return solved<Eigen::BiCGSTAB<SparseMatrix>, Eigen::SparseLU<SparseMatrix>>(network, load);
 }
 
 /// visit(branch, stiffness) for every touching pair.
@@ -236,13 +260,19 @@ void for_stiffnesses(const LiveContacts &contacts, const Visit &visit)
   });
 }
 
-Mat6 energy(const Element &e, const Mat6 &deformation) { return deformation.transpose() * rigidity(e) * deformation; }
+/// Of its forces in a deformation, on a virtual one.
+Mat6 work(const Element &e, const Mat6 &virtual_deformation, const Mat6 &deformation)
+{
+  return virtual_deformation.transpose() * rigidity(e) * deformation;
+}
 
-Mat6 checked(const Mat6 &sum, double volume)
+Mat6 checked(const Mat6 &sum, double volume, Sliding sliding)
 {
   const Mat6 stiffness = sum / volume;
   if (!stiffness.allFinite())
     throw RunFailure("elastic stiffness: not a number; look for such values in normals, overlaps and the cell");
+  if (sliding == Sliding::plastic)
+    return stiffness;
   return 0.5 * (stiffness + stiffness.transpose());
 }
 } // namespace
@@ -254,8 +284,10 @@ Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding)
   drop_unloaded(elements, n_grains);
   if (elements.empty())
     return Mat6::Zero();
+  if (std::ranges::all_of(elements, &Element::is_elastic))
+    sliding = Sliding::elastic;
   const Unknowns unknowns(elements, n_grains, snapshot.law->friction > 0);
-  const Eigen::MatrixXd motion = fluctuations(elements, unknowns);
+  const Eigen::MatrixXd motion = fluctuations(elements, unknowns, sliding);
   Mat6 sum = Mat6::Zero();
   for (const Element &e : elements)
     {
@@ -264,9 +296,10 @@ Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding)
       for (int i = 0; i < 12; ++i)
         if (at[i] >= 0)
           own.row(i) = motion.row(at[i]);
-      sum += energy(e, imposed(e) + compatibility(e) * own);
+      const Mat6 mean = imposed(e), whole = mean + compatibility(e) * own;
+      sum += work(e, sliding == Sliding::elastic ? whole : mean, whole);
     }
-  return checked(sum, snapshot.volume());
+  return checked(sum, snapshot.volume(), sliding);
 }
 
 Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding)
@@ -276,8 +309,8 @@ Mat6 affine_stiffness(const Snapshot &snapshot, Sliding sliding)
     return Mat6::Zero();
   Mat6 sum = Mat6::Zero();
   for (const Element &e : elements)
-    sum += energy(e, imposed(e));
-  return checked(sum, snapshot.volume());
+    sum += work(e, imposed(e), imposed(e));
+  return checked(sum, snapshot.volume(), sliding);
 }
 
 Vec3 affine_moduli(const LiveContacts &contacts, double volume)

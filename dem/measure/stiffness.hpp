@@ -13,10 +13,10 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 enum class Sliding
 {
   elastic, ///< as if it had never yielded: stiffness after a reversal, that of small waves
-  released ///< no ks where the contact slides, no kr where it rolls: a loading that keeps yielding contacts yielding
+  plastic  ///< within 1 % of its limit it continues to yield: tangent of continued loading
 };
 
-/// Instantaneous elastic stiffness of a periodic packing, by condensation of its contact network onto the mean strain.
+/// Instantaneous stiffness of a periodic packing by condensation of its contact network onto the mean strain.
 ///
 ///     grain 1 ----- l = (R1+R2-u) n -----> grain 2
 ///
@@ -27,23 +27,27 @@ enum class Sliding
 /// eps: mean strain, symmetric, no mean rotation; u, w: what each grain's displacement and rotation differ from it; K:
 /// second derivatives of W. The shear force is that of the law; r in place of R makes a rigid rotation free of energy
 /// and K symmetric. Torques have the arm r, in the law R - u/2, the same for equal radii. Not done: existing
-/// forces turn with the normal (of the order of u/R against kn); the strength of a yielding contact follows its
-/// normal force, which makes a plastic stiffness unsymmetric.
+/// forces turn with the normal (of the order of u/R against kn).
+///
+/// Plastic: a contact that yields follows its limit and resists across it, as the radial return does,
+/// dfs = -ks (1 - t t^T) dvt + (fs/fn) dfn, t = fs/|fs|, dfn = -kn n.dv, and mb likewise. K and C are not symmetric
+/// then, and C is the stress of the forces. A contact that unloads counts as loading.
 ///
 /// Grains with fewer than two contacts bear no load and are left out with their contact, again and again until none is
 /// left. One grain of every connected cluster keeps its place. What still moves without energy (frictionless, yielding
 /// or chain-like parts; a cluster that does not reach round the cell turns as a whole) is held by 1e-10 of the largest
 /// entry on the diagonal of K_uu, rotations counted as w R. C is the energy of the elements in the motion found, so the
-/// error of this is quadratic: a relative (1e-10 k/lambda)^2 of what a mode of stiffness lambda relaxes.
+/// error of this is quadratic: a relative (1e-10 k/lambda)^2 of what a mode of stiffness lambda relaxes; of a plastic C
+/// it is linear.
 /// Without friction there are no rotations among the unknowns.
 ///
 /// @pre  periodic: contacts with images of grains are among `contacts`, by their normal and overlap; positions are not
 ///       used. history.normal is the normal, whatever the law
-/// @return symmetric, no negative eigenvalue beyond rounding, C <= affine_stiffness; zero without contacts
+/// @return elastic: symmetric, no negative eigenvalue beyond rounding, C <= affine_stiffness; zero without contacts
 /// @throws RunFailure  the snapshot has walls' contacts; the factorisation fails or something is not a number
 /// cost up to 1,500 grains a sparse LDL^T of 6 unknowns per grain, on one shared core 0.3 s for 1,000 grains at Z = 4.6
 ///      and 0.9 s at 6.8; above, where fill-in takes over (4,000 grains: 9 to 46 s), conjugate gradients: 0.8 s for
-///      4,000 at Z = 4.5; LDL^T again should they not converge
+///      4,000 at Z = 4.5; LDL^T again should they not converge. Plastic: LU and BiCGSTAB, about the same
 /// tested: tests/dem/measure/stiffness_test.cpp (lattices, column in series, dense pseudo-inverse, bounds, rotation,
 /// rattlers, yielding), tests/verification/rve_stiffness_test.cpp (strain probes of 1e-7)
 Mat6 condensed_stiffness(const Snapshot &snapshot, Sliding sliding = Sliding::elastic);

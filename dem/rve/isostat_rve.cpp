@@ -217,7 +217,7 @@ isostat_status isostat_rve_stiffness(const isostat_rve *rve, int yielding_contac
 {
   return guarded(__func__, [&] {
     Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&given(stiffness, "stiffness")) =
-        handle(rve, "rve").element.stiffness(yielding_contacts_resist ? Sliding::elastic : Sliding::released);
+        handle(rve, "rve").element.stiffness(yielding_contacts_resist ? Sliding::elastic : Sliding::plastic);
     return ISOSTAT_OK;
   });
 }

@@ -99,9 +99,9 @@ isostat_status isostat_rve_mixed(isostat_rve *rve, const double *gradient, const
 /// Cauchy effective stress, Pa (6).
 isostat_status isostat_rve_stress(const isostat_rve *rve, double *stress);
 
-/// Instantaneous elastic stiffness, d(stress)/d(strain), Pa (36), symmetric; see dem/measure/stiffness.hpp. It costs a
+/// Instantaneous stiffness, d(stress)/d(strain), Pa (36); see dem/measure/stiffness.hpp. It costs a
 /// sparse factorisation: 0.3 s for 1,000 grains.
-/// @param yielding_contacts_resist  0: contacts that slide or roll yield on; else all are elastic, as after a reversal
+/// @param yielding_contacts_resist  0: contacts at a limit yield on, C is not symmetric; else all are elastic
 isostat_status isostat_rve_stiffness(const isostat_rve *rve, int yielding_contacts_resist, double *stiffness);
 
 /// Volume of the pores over that of the grains.

@@ -84,14 +84,13 @@ void bind_measures(py::module_ &module)
           "stiffness",
           [](const Snapshot &s, bool yielding_contacts_resist) {
             const py::gil_scoped_release free;
-            return condensed_stiffness(s, yielding_contacts_resist ? Sliding::elastic : Sliding::released);
+            return condensed_stiffness(s, yielding_contacts_resist ? Sliding::elastic : Sliding::plastic);
           },
           py::arg("yielding_contacts_resist") = true,
           "Instantaneous elastic stiffness of a periodic packing, (6, 6), Pa: stress xx, yy, zz, yz, xz, xy for strain "
-          "in "
-          "the same order, shear as gamma. yielding_contacts_resist=False: no ks where contacts slide, no kr where "
-          "they "
-          "roll.")
+          "in\n"
+          "the same order, shear as gamma. yielding_contacts_resist=False: tangent of continued loading, in which\n"
+          "contacts within 1 % of a limit follow it; not symmetric.")
       .def("measures", &measures,
            "Scalars that a packing alone gives, as columns of the history, by name; SI, compression positive. "
            "measure_units()\n"

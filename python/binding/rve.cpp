@@ -127,7 +127,7 @@ RveResponse mixed(Rve &rve, const Gradient &gradient, const Given<Mat3, "stress"
 Mat6 stiffness(Rve &rve, bool yielding_contacts_resist)
 {
   const py::gil_scoped_release free;
-  return rve.stiffness(yielding_contacts_resist ? Sliding::elastic : Sliding::released);
+  return rve.stiffness(yielding_contacts_resist ? Sliding::elastic : Sliding::plastic);
 }
 
 py::bytes packed(Rve &rve)

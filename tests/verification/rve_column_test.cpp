@@ -163,7 +163,8 @@ TEST(RveColumn, TinyMotionMeetsTheStiffnessOfThePackings)
                         without_limits(test::soft_specimen(4, 50e3)), without_limits(test::soft_specimen(9, 50e3))},
                        {}, MPI_COMM_SELF);
   std::vector<Stiffness> stiffnesses(4);
-  packings.skeleton_stiffness(stiffnesses);
+  for (std::size_t q = 0; q < 4; ++q)
+    stiffnesses[q] = packings.element(q)->stiffness();
   GivenStiffness twin(stiffnesses, packings);
   const double step = 0.5 * Dynamics(space, twin, {.drainage = Drainage::undrained}).stable_step();
   double gamma = 0, gamma_of_twin = 0, peak = 0;

@@ -137,11 +137,33 @@ inline Mat6 turned_strains(const Mat3 &q)
   return m;
 }
 
-/// The definition, dense: every grain with six unknowns, energy = |J q|^2 / 2, and a pseudo-inverse.
+/// Force and moment of a contact, those of its history plus what (v, w2 - w1) changes; beyond a limit they return
+/// to it radially.
+inline Eigen::Matrix<double, 6, 1> contact_action(const Snapshot &s, const Contact &c, const Vec3 &v, const Vec3 &b,
+                                                  Sliding sliding)
+{
+  const double r1 = s.grains.radius(c.first), r2 = s.grains.radius(c.second);
+  const ContactStiffness k = s.law->stiffness(r1, r2, c.overlap);
+  const double a = (r1 + r2) / (r1 + r2 - c.overlap);
+  const Vec3 &m = c.history.normal;
+  const double fn = c.normal_force - k.normal * m.dot(v);
+  Vec3 fs = c.history.shear_force - a * k.shear * (v - m.dot(v) * m),
+       mb = c.history.bending_moment - k.rolling * (b - m.dot(b) * m);
+  const auto [slides, rolls] = s.law->yield(s.closed(c), yield_round_off);
+  if (sliding == Sliding::plastic && slides)
+    fs *= c.history.shear_force.norm() / c.normal_force * fn / fs.norm();
+  if (sliding == Sliding::plastic && rolls)
+    mb *= c.history.bending_moment.norm() / c.normal_force * fn / mb.norm();
+  Eigen::Matrix<double, 6, 1> action;
+  action << -fn * m - fs, k.twisting * m.dot(b) * m - mb;
+  return action;
+}
+
+/// The definition, dense: every grain with six unknowns, virtual work J^T D J, and a pseudo-inverse.
 inline Mat6 dense_stiffness(const Snapshot &s, Sliding sliding)
 {
   const int n = 6 * s.grains.n_grains();
-  Eigen::MatrixXd j(10 * s.contacts.size(), n + 6);
+  Eigen::MatrixXd j(6 * s.contacts.size(), n + 6), d = Eigen::MatrixXd::Zero(j.rows(), j.rows());
   for (int column = 0; column < n + 6; ++column)
     {
       const Eigen::VectorXd q = Eigen::VectorXd::Unit(n + 6, column);
@@ -156,18 +178,21 @@ inline Mat6 dense_stiffness(const Snapshot &s, Sliding sliding)
           const Vec3 w1 = q.segment<3>(6 * c.first + 3) / radius, w2 = q.segment<3>(6 * c.second + 3) / radius;
           const Vec3 v = q.segment<3>(6 * c.second) - q.segment<3>(6 * c.first) + l * eps * m -
                          (r1 / a * w1 + r2 / a * w2).cross(m);
-          const ContactStiffness stiff = s.law->stiffness(r1, r2, c.overlap);
-          const auto [slides, rolls] = s.law->yield(s.closed(c), yield_round_off);
-          const double ks = sliding == Sliding::released && slides ? 0 : a * stiff.shear;
-          const double kr = sliding == Sliding::released && rolls ? 0 : stiff.rolling;
-          auto rows = j.col(column).segment<10>(10 * k);
-          rows[0] = std::sqrt(stiff.normal) * m.dot(v);
-          rows.segment<3>(1) = std::sqrt(ks) * m.cross(v);
-          rows.segment<3>(4) = std::sqrt(kr) * m.cross(w2 - w1);
-          rows.segment<3>(7) = std::sqrt(stiff.twisting) * m.dot(w2 - w1) * m;
+          j.col(column).segment<3>(6 * k) = v;
+          j.col(column).segment<3>(6 * k + 3) = w2 - w1;
         }
     }
-  const Eigen::MatrixXd k = j.transpose() * j;
+  for (std::size_t c = 0; c < s.contacts.size(); ++c)
+    for (int column = 0; column < 6; ++column)
+      {
+        const double small = column < 3 ? 1e-10 : 1e-6; // m; 1
+        const Eigen::Matrix<double, 6, 1> x = small * Eigen::Matrix<double, 6, 1>::Unit(column);
+        const auto action = [&](double sign) {
+          return contact_action(s, s.contacts[c], sign * x.head<3>(), sign * x.tail<3>(), sliding);
+        };
+        d.block<6, 1>(6 * c, 6 * c + column) = (action(1) - action(-1)) / (2 * small);
+      }
+  const Eigen::MatrixXd k = j.transpose() * d * j;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> inverse;
   inverse.setThreshold(1e-12);
   inverse.compute(k.topLeftCorner(n, n));
