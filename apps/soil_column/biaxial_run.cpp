@@ -207,10 +207,10 @@ private:
 
   std::string key_state() override
   {
-    return fmt::format("axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} trials, {} sub-steps, residual "
-                       "{:.1e}",
+    return fmt::format("axial strain {:.4f}  stress {:.2f} kPa  volumetric {:+.5f}  {} trials, {} sub-steps, residuals "
+                       "{}",
                        result_.axial_strain, result_.last_stress / kPa, result_.volumetric_strain, run_.effort().trials,
-                       run_.effort().substeps, run_.residual());
+                       run_.effort().substeps, run_.effort().convergence());
   }
 
   void open_files() override

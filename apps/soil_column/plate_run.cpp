@@ -86,9 +86,9 @@ private:
     result_.follow(moved, force, run_.residual());
     progress_.say(
         fmt::format("step {:>4} of {}  displacement {:+.5g} m  force {:.5g} kN/m  pressure {:.5g} kPa  {} trials, "
-                    "{} sub-steps, residual {:.1e}",
+                    "{} sub-steps, residuals {}",
                     run_.n_steps(), scene_.load_steps.number, moved, force / 1e3, pressure / 1e3, effort.trials,
-                    effort.substeps, run_.residual()));
+                    effort.substeps, effort.convergence()));
   }
 
   std::string key_state() override

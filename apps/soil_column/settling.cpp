@@ -52,9 +52,11 @@ StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
                                       return std::array<double, 3>{0, 0, -t * load.surcharge_at(place[0])};
                                     }});
   settings.petsc = scene.analysis.petsc;
-  settings.newton = scene.has_grains()
-                        ? NewtonSettings{.tolerance = 5e-3, .max_iterations = 0, .relaxation_iterations = 300}
-                        : NewtonSettings{.tolerance = 1e-6, .max_iterations = 15, .relaxation_iterations = 300};
+  settings.newton = {.tolerance = 1e-6, .max_iterations = 15, .relaxation_iterations = 300};
+  if (scene.has_grains() && scene.grains.drive.on)
+    settings.newton.tolerance = 1e-3;
+  else if (scene.has_grains()) // noisy
+    settings.newton = {.tolerance = 5e-3, .max_iterations = 0, .relaxation_iterations = 300};
   return settings;
 }
 } // namespace
@@ -72,8 +74,9 @@ Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &materia
         {
           statics.step(static_cast<double>(k) / steps - statics.time());
           if (after_step)
-            after_step(fmt::format("settles: step {:>2} of {}  {} trials, residual {:.1e}{}", k, steps,
-                                   statics.effort().trials, statics.residual(), statics.linear_effort().text()));
+            after_step(fmt::format("settles: step {:>2} of {}  {} trials, residuals {}{}", k, steps,
+                                   statics.effort().trials, statics.effort().convergence(),
+                                   statics.linear_effort().text()));
         }
     }
   catch (const RunFailure &failure)

@@ -15,10 +15,11 @@ struct Settled
 };
 
 /// Brings the soil of a box from its K0 stress into equilibrium with its weight (buoyant under water) and the
-/// surcharge, drained, in ten steps: docs/theory_column.md, section 9. Packings by relaxation to a residual of 0.5 % of
-/// the force scale, formulas by Newton's method to 1e-6 where it converges, else by relaxation. Displacements are
-/// forgotten, what the material has undergone is not. A plate on the surface does not exist yet, one in the base or a
-/// wall is a part of these: the soil does not depend on it.   Collective.
+/// surcharge, drained, in ten steps: docs/theory_column.md, section 9. By Newton's method where it converges, else by
+/// relaxation, to a residual of 1e-6 of the force scale, of 0.1 % with packings that go from balance to balance; other
+/// packings by relaxation to 0.5 %. Displacements are forgotten, what the material has undergone is not. A plate on the
+/// surface does not exist yet, one in the base or a wall is a part of these: the soil does not depend on it.
+/// Collective.
 /// @param mesh  of the material's points
 /// @param after_step  called after each step with a line on it; what it throws goes through
 /// @throws RunFailure  the soil does not bear its weight and the surcharge

@@ -29,6 +29,22 @@ bool solve(StaticsSubstep &substep, const StaticsProblem &problem)
 }
 } // namespace
 
+std::string StaticsEffort::convergence() const
+{
+  constexpr std::size_t shown = 5; // at the beginning, and at the end
+  std::vector<std::string> attempts;
+  for (const std::vector<double> &attempt : residuals)
+    {
+      const std::span<const double> all = attempt;
+      std::string &text = attempts.emplace_back();
+      if (all.size() <= 2 * shown)
+        text = fmt::format("{:.1e}", fmt::join(all, " "));
+      else
+        text = fmt::format("{:.1e} ... {:.1e}", fmt::join(all.first(shown), " "), fmt::join(all.last(shown), " "));
+    }
+  return fmt::format("{}", fmt::join(attempts, " | "));
+}
+
 Statics::Statics(const FiniteElementSpace &space, Material &material, StaticsSettings settings)
     : problem_(std::make_unique<StaticsProblem>(space, material, std::move(settings))),
       state_(space, material, problem_->settings.min_force)

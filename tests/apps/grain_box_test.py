@@ -46,6 +46,13 @@ class Box(grain_column_test.GrainColumnTest):
         self.assert_done(self.run_column(self.scene, "-o", "parts", "-q", "--resume", "--threads", 2))
         self.assert_same_bytes("whole", "parts")
 
+    def test_packings_in_balance_settle_to_a_thousandth(self):
+        run = self.run_column(self.scene, "-o", "run", *settings(analysis__duration="0.01 s", grains__drive="static"))
+        self.assert_done(run)
+        last = [float(found[1]) for found in re.finditer(r"settles: .* trials, residuals .*?(\S+)$", run.stderr, re.M)]
+        self.assertTrue(last, run.stderr)
+        self.assert_below(max(last), 1e-3, "the tolerance of Newton's method")
+
     def test_maps_have_the_redundancy_of_each_packing(self):
         self.assert_done(self.run_column(self.scene, "-o", "run", "-q", *settings(analysis__duration="0.05 s")))
         with h5py.File(self.folder / "run/maps.h5") as file:

@@ -54,22 +54,34 @@ struct Strip : Discretisation<2>
   }
 };
 
-/// The largest load beyond the surcharge that has an equilibrium, within 0.25 % of `expected`, Pa.
-double limit_load(const Strip &space, double friction, double surcharge, double expected)
+MohrCoulomb associated_soil(double friction, double surcharge, std::size_t n_points)
 {
   MohrCoulombParameters p;
   p.shear_modulus = modulus;
   p.friction = p.dilatancy = friction;
   p.cohesion = cohesion;
-  MohrCoulomb soil(p, space.n_points());
-  soil.set_initial_stress(std::vector<Stress>(space.n_points(), {-surcharge, -surcharge, -surcharge, 0, 0, 0}));
+  MohrCoulomb soil(p, n_points);
+  soil.set_initial_stress(std::vector<Stress>(n_points, {-surcharge, -surcharge, -surcharge, 0, 0, 0}));
+  return soil;
+}
+
+/// @param load  at time 1, Pa
+StaticsSettings loaded_strip(double load, const NewtonSettings &newton)
+{
   StaticsSettings settings;
-  settings.newton = {.tolerance = 1e-5, .max_iterations = 20, .max_halvings = 2};
-  settings.tractions = {{Face::surface, [expected](double time, const Place &place) {
+  settings.newton = newton;
+  settings.tractions = {{Face::surface, [load](double time, const Place &place) {
                            const double part = place[0] < 1 - 1e-9 ? 1 : (place[0] < 1 + 1e-9 ? 0.5 : 0);
-                           return Place{0, 0, -part * time * expected};
+                           return Place{0, 0, -part * time * load};
                          }}};
-  Statics statics(space, soil, settings);
+  return settings;
+}
+
+/// The largest load beyond the surcharge that has an equilibrium, within 0.25 % of `expected`, Pa.
+double limit_load(const Strip &space, double friction, double surcharge, double expected)
+{
+  MohrCoulomb soil = associated_soil(friction, surcharge, space.n_points());
+  Statics statics(space, soil, loaded_strip(expected, {.tolerance = 1e-5, .max_iterations = 20, .max_halvings = 2}));
   try
     {
       for (double done = 0; done < 1.5; done = statics.time())
@@ -99,5 +111,26 @@ TEST(BearingCapacity, OfAStripIsPrandtls)
       EXPECT_CLOSE_BECAUSE(load + surcharge, exact, 0.02,
                            "two quadratic elements below half of the strip, loads within 0.25 %");
     }
+}
+
+/// At two thirds of the collapse load in one step.
+TEST(BearingCapacity, NewtonConvergesQuadratically)
+{
+  const Strip space(4, 2, 2, 0);
+  MohrCoulomb soil = associated_soil(std::tan(20 * std::numbers::pi / 180), 20e3, space.n_points());
+  Statics statics(space, soil, loaded_strip(180e3, {.tolerance = 1e-12}));
+  statics.step(1);
+  ASSERT_EQ(statics.effort().residuals.size(), 1u);
+  const std::vector<double> &residuals = statics.effort().residuals[0];
+  int squared = 0;
+  for (std::size_t k = 1; k < residuals.size(); ++k)
+    if (residuals[k - 1] < 1e-2) // with the yield surfaces found
+      {
+        EXPECT_BELOW_BECAUSE(residuals[k], 1e-14 + 100 * residuals[k - 1] * residuals[k - 1],
+                             "a constant of the problem, and round-off")
+            << statics.effort().convergence();
+        ++squared;
+      }
+  EXPECT_GE(squared, 3);
 }
 } // namespace isostat

@@ -34,6 +34,7 @@ bool search_line(StaticsSubstep &substep, double tolerance)
       substep.report.residual = after / substep.report.scale;
       if (after <= std::max((1 - min_gain * part) * before, tolerance * substep.report.scale))
         {
+          substep.report.add_iteration(substep.report.residual);
           substep.left *= 1 - part;
           return true;
         }
@@ -49,6 +50,7 @@ bool search_line(StaticsSubstep &substep, double tolerance)
 
 bool solve_by_newton(StaticsSubstep &substep, const Material &material, const NewtonSettings &settings)
 {
+  substep.report.effort.residuals.emplace_back();
   std::vector<Stiffness> tangents(material.n_points());
   for (unsigned iteration = 0; !substep.in_equilibrium(); ++iteration)
     {

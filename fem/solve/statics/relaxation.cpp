@@ -107,7 +107,7 @@ Outcome attempt(StaticsSubstep &substep, bool may_diverge, unsigned &left)
       carry(carried, substep.increment.p, before.p);
       if (!substep.evaluate())
         return Outcome::refused;
-      substep.report.residual = substep.merit(0) / substep.report.scale;
+      substep.report.add_iteration(substep.merit(0) / substep.report.scale);
     }
   return Outcome::at_rest;
 }
@@ -120,6 +120,7 @@ bool solve_by_relaxation(StaticsSubstep &substep, const Material &material, unsi
   for (double factor = 1; outcome == Outcome::diverges; factor *= 2)
     {
       substep.restart();
+      substep.report.effort.residuals.emplace_back();
       if (!set_metric(factor, substep, material))
         return false;
       outcome = attempt(substep, factor < stiffest, left);

@@ -6,6 +6,7 @@
 #include "tests/support/drawn_mesh.hpp"
 #include "tests/support/near.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace isostat
@@ -178,6 +179,11 @@ TEST(Statics, NewtonConvergesQuadraticallyTowardsAHyperbola)
                       "Newton's tolerance of 1e-12, over a tangent that is 1/400 of the first");
   EXPECT_LE(statics.effort().iterations, 9u);
   EXPECT_EQ(statics.effort().substeps, 1u);
+  const std::vector<double> &residuals = statics.effort().residuals.at(0);
+  EXPECT_EQ(residuals.size(), statics.effort().iterations);
+  EXPECT_EQ(residuals.back(), statics.residual());
+  EXPECT_BELOW_BECAUSE(residuals.back(), 100 * std::pow(*(residuals.end() - 2), 2), "a constant of the hyperbola");
+  EXPECT_THAT(statics.effort().convergence(), testing::EndsWith(fmt::format(" {:.1e}", residuals.back())));
 }
 
 /// Newton's first step goes 30 times too far; the search along it cuts it.
