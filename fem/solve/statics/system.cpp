@@ -284,8 +284,8 @@ void StaticsSystem::factorise()
     }
 }
 
-/// For -statics_pc_type fieldsplit: displacements and pressures by name, (16a), and what the user's options may replace.
-/// The matrix of displacements gets from their name what it has without pressures.
+/// For -statics_pc_type fieldsplit: displacements and pressures by name, (16a), and what the user's options may
+/// replace. The matrix of displacements gets from their name what it has without pressures.
 void StaticsSystem::tell_structure(KSP ksp) const
 {
   const Matrices &m = *matrices_;
@@ -294,7 +294,6 @@ void StaticsSystem::tell_structure(KSP ksp) const
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp, &pc));
   petsc_check(KSPSetType(ksp, KSPFGMRES));
-  petsc_check(KSPGMRESSetRestart(ksp, 100));
   petsc_check(PCFieldSplitSetType(pc, PC_COMPOSITE_SCHUR));
   petsc_check(PCFieldSplitSetSchurFactType(pc, PC_FIELDSPLIT_SCHUR_FACT_UPPER));
   petsc_check(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_USER, m.schur.get()));
