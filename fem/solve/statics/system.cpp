@@ -30,13 +30,15 @@ void strain_matrix(const CellTables &t, std::size_t point, Eigen::Matrix<double,
 PetscMatrix assembled(Mat matrix, const std::vector<PetscInt> &held, double diagonal)
 {
   MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
+  PetscInt first = 0, end = 0;
+  petsc_check(MatGetOwnershipRange(matrix, &first, &end));
+  for (PetscInt row = first; row < end; ++row) // of rows that no cell has, too
+    petsc_check(MatSetValue(matrix, row, row, 0, ADD_VALUES));
   petsc_check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   petsc_check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   petsc_check(MatSetOption(matrix, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
-  PetscInt first = 0, end = 0;
   IS rows = nullptr, columns = nullptr;
   Mat removed = nullptr;
-  petsc_check(MatGetOwnershipRange(matrix, &first, &end));
   petsc_check(ISCreateStride(communicator, end - first, first, 1, &rows));
   petsc_check(
       ISCreateGeneral(communicator, static_cast<PetscInt>(held.size()), held.data(), PETSC_USE_POINTER, &columns));
