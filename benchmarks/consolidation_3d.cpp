@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Consolidation of Cryer's sphere, 4 N^3 elements of degree 2 for an octant, by a split of displacements and pressures:
-// the load at once, then steps of T = 0.01. What the linear solutions cost, and the error of the pressure in the middle.
+// Consolidation of Cryer's sphere, 4 N^3 elements of degree 2 for an octant, by a split of displacements and
+// pressures: the load at once, then steps of T = 0.01. What the linear solutions cost, and the error of the pressure in
+// the middle.
 // Prints a row of a table. consolidation_3d.py runs it for several sizes and ranks.
 //
 //   [mpirun -n RANKS] consolidation_3d N [STEPS [OPTIONS]]

@@ -68,8 +68,8 @@ public:
   /// Pressure at all points, Pa, 0 above the water table, whatever the ghosts of p hold.
   std::vector<double> point_pressures(const Vector &p) const;
   /// Bound of the largest omega^2 of the mesh, (rad/s)^2: the largest of any cell (Irons & Treharne 1971), for an
-  /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held in wet cells.   @param frequencies  frequencies()
-  /// Cost: in the loop.
+  /// isotropic skeleton with these moduli; `shear_only`: vertical motion is held in wet cells.
+  /// @param frequencies  frequencies()   Cost: in the loop.
   double max_frequency_squared(std::span<const double> frequencies, std::span<const WaveModuli> moduli,
                                bool shear_only) const;
   /// omega^2 of each cell per Pa of wave modulus: cell_frequencies() over the density of its layer.

@@ -14,8 +14,8 @@ namespace isostat::test
 ///     p/p_0 = sum_j eta (sin x - x) / [eta x cos(x)/2 + (eta - 1) sin x] exp(-x^2 c t)
 ///     (1 - eta x^2/2) tan x = x                eta = (1 - nu)/(1 - 2 nu) (1 + K S)
 ///
-/// (Verruijt 2013, Theory and Problems of Poroelasticity, section 3.3). An octant of 4 n^3 elements: a cube in the middle
-/// and a block between it and the surface along each axis, 2 n along the radius.
+/// (Verruijt 2013, Theory and Problems of Poroelasticity, section 3.3). An octant of 4 n^3 elements: a cube in the
+/// middle and a block between it and the surface along each axis, 2 n along the radius.
 struct CryersSphere
 {
   /// Of a corner of a cell, in the cube [0, 2]^3 of which the three bars that leave [0, 1]^3 along the axes are meshed.

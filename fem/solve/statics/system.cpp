@@ -30,13 +30,15 @@ void strain_matrix(const CellTables &t, std::size_t point, Eigen::Matrix<double,
 PetscMatrix assembled(Mat matrix, const std::vector<PetscInt> &held, double diagonal)
 {
   MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(matrix));
+  PetscInt first = 0, end = 0;
+  petsc_check(MatGetOwnershipRange(matrix, &first, &end));
+  for (PetscInt row = first; row < end; ++row) // of rows that no cell has, too
+    petsc_check(MatSetValue(matrix, row, row, 0, ADD_VALUES));
   petsc_check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   petsc_check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   petsc_check(MatSetOption(matrix, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
-  PetscInt first = 0, end = 0;
   IS rows = nullptr, columns = nullptr;
   Mat removed = nullptr;
-  petsc_check(MatGetOwnershipRange(matrix, &first, &end));
   petsc_check(ISCreateStride(communicator, end - first, first, 1, &rows));
   petsc_check(
       ISCreateGeneral(communicator, static_cast<PetscInt>(held.size()), held.data(), PETSC_USE_POINTER, &columns));
@@ -284,8 +286,8 @@ void StaticsSystem::factorise()
     }
 }
 
-/// For -statics_pc_type fieldsplit: displacements and pressures by name, (16a), and what the user's options may replace.
-/// The matrix of displacements gets from their name what it has without pressures.
+/// For -statics_pc_type fieldsplit: displacements and pressures by name, (16a), and what the user's options may
+/// replace. The matrix of displacements gets from their name what it has without pressures.
 void StaticsSystem::tell_structure(KSP ksp) const
 {
   const Matrices &m = *matrices_;
@@ -294,7 +296,6 @@ void StaticsSystem::tell_structure(KSP ksp) const
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp, &pc));
   petsc_check(KSPSetType(ksp, KSPFGMRES));
-  petsc_check(KSPGMRESSetRestart(ksp, 100));
   petsc_check(PCFieldSplitSetType(pc, PC_COMPOSITE_SCHUR));
   petsc_check(PCFieldSplitSetSchurFactType(pc, PC_FIELDSPLIT_SCHUR_FACT_UPPER));
   petsc_check(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_USER, m.schur.get()));
