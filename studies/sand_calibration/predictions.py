@@ -18,6 +18,8 @@ LABORATORY = pathlib.Path(__file__).parents[2] / "apps/laboratory"
 PLAN = LABORATORY.parent / "scenes/calibrate/karlsruhe_drained.toml"
 GRAINS, FIRST_SEED = 1000, 11  # other specimens than those of the fit
 MOST_CYCLES, ONSET = 100, 0.05  # p'/p0' at which cycles are counted, r_u = 0.95
+CYCLIC = ("TCUI1", "TCUI4", "TCUI7", "TCUI13")  # cycles known, and the same as the last on another specimen
+EXPANSIONS = (0, 0.002, 0.005, 0.01)
 KINDS = {"small strain": 1, "drained": 3, "undrained": 3, "cyclic": 8}  # CPU seconds, by estimate
 
 
@@ -61,27 +63,20 @@ class Fit:
         self.numbers = json.loads((folder / "calibrate.json").read_text(encoding="utf-8"))
         self.contact = isostat.Scene(folder / "best_scene.toml").to_dict()["contact"]
         self.fitted = self.numbers["misfit_best"]
-        blind = [curve["best"] for curve in self.numbers["curves"] if curve["blind"]]
-        self.blind = float(np.sqrt(np.mean(np.square(blind))))
         self.values = [number(one["best"]) for one in self.numbers["parameters"]]
 
     def drawn(self, k):
         """{key of a scene, or group of specimens: number}: the best set (0), or a draw of the posterior."""
-        values = posterior.fit(self.folder.parent).draw(k) if self.is_opened and k else self.values
+        values = posterior.fit(self.folder.parent).draw(k) if k else self.values
         return dict(zip((one["curve"] or one["key"] for one in self.numbers["parameters"]), map(float, values)))
-
-    @property
-    def is_opened(self):
-        return self.folder.name == "opened"
 
     def scene(self, k, density):
         """Sections contact and specimen of a draw, for specimens of a relative density of the laboratory."""
         values = self.drawn(k)
         contact = self.contact | {"friction": f"{values['contact.friction']:.6g} deg"}
         contact["rolling"] = contact["rolling"] | {"limit": values["contact.rolling.limit"]}
-        specimen = {"domain": "periodic-cell",
-                    "preparation_friction": f"{preparation(values, density):.5g} deg"}
-        return contact, specimen | ({"expansion": values["specimen.expansion"]} if self.is_opened else {})
+        return contact, {"domain": "periodic-cell", "expansion": values["specimen.expansion"],
+                         "preparation_friction": f"{preparation(values, density):.5g} deg"}
 
 
 def preparation(frictions, density):
@@ -117,26 +112,31 @@ class Test:
     pressure: float  # kPa
     seed: int
     stage: tuple = ()  # (key, value)
+    expansion: float | None = None  # in place of the fitted one
 
     @property
     def name(self):
-        return f"{self.contact}_{self.test}_s{self.seed}".replace(" ", "_")
+        of = "" if self.expansion is None else f"_x{self.expansion:g}"
+        return f"{self.contact}_{self.test}{of}_s{self.seed}".replace(" ", "_")
 
     def scene(self):
         fit = fit_of(self.output / self.contact)
         if fit is None:
             return None
         contact, specimen = fit.scene(self.seed - FIRST_SEED, self.density)
+        if self.expansion is not None:
+            specimen |= {"expansion": self.expansion}
         return isostat.Scene(scene_of(self.name, GRAINS, self.seed, specimen | {"pressure": f"{self.pressure:g} kPa"},
                                       [dict(self.stage)] if self.stage else [], contact=contact, motion=self.motion))
 
     @property
     def motion(self):
         """Rates: of the fit; of cyclic tests the default, as for the undrained ones of p' at little strain."""
-        return {"drained": {"inertial_number": 2e-3}, "undrained": {"inertial_number": 7e-4}}.get(self.kind, {})
+        return {"drained": {"inertial_number": 2e-3}, "undrained": {"inertial_number": 7e-4}}.get(
+            self.kind.removesuffix(" over expansion"), {})
 
     def estimated_seconds(self):
-        return KINDS[self.kind]
+        return KINDS[self.kind.removesuffix(" over expansion")]
 
 
 class SmallStrain(Test):
@@ -170,11 +170,20 @@ def undrained(output, contact, seeds):
 def cyclic_tests(output, contact, seeds):
     return [Test(output, contact, "cyclic", row["test"], round(relative_density(row["e0"]), 4), row["p0 (kPa)"], seed,
                  cyclic_stage(row["q amplitude (kPa)"]))
-            for seed in seeds for row in read_csv(LABORATORY / "undrained_cyclic.csv")]
+            for seed in seeds for row in read_csv(LABORATORY / "undrained_cyclic.csv") if row["test"] in CYCLIC]
+
+
+def expansions(output, contact, seeds):
+    """Dense undrained compression to 1 % with the best set and other expansions, a cyclic test with none."""
+    tests = {test.test: test for test in cyclic_tests(output, contact, seeds)}
+    tests |= {test.test: dataclasses.replace(test, stage=tuple((dict(test.stage) | {"strain": 0.01}).items()))
+              for test in undrained(output, contact, seeds)}  # dense ones reach 10 MPa after that
+    return [dataclasses.replace(tests[name], kind=f"{tests[name].kind} over expansion", expansion=x)
+            for name, x in [*(("TMU6", x) for x in EXPANSIONS), ("TCUI13", 0)]]
 
 
 def drained(output, contact, seeds):
-    """Those in drained/ of other densities."""
-    others = sorted({path.stem for path in (LABORATORY / "drained").glob("TMD*.csv")} - set(curves()))
+    """Those in drained/ that are not fitted."""
+    others = sorted({path.stem for path in (LABORATORY / "drained").glob("TMD*.csv")} - set(fitted().values()))
     return [Test(output, contact, "drained", test, densities()[test][0], round(densities()[test][1], -2), seed,
                  (("kind", "drained"), ("strain", 0.106))) for test in others for seed in seeds]

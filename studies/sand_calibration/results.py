@@ -10,16 +10,17 @@ from isostat.campaign.calibrate.plan import read_plan
 from isostat.campaign.runs import read_summary
 from isostat.figures.common import legend_below
 from isostat.results import read_table
-from studies.drawing import BLUE, GREY, ORANGE, band, panels, plain_logarithm, save
+from studies.drawing import ORANGE, band, panels, save
 from studies.ensembles import ensemble
 from studies.sand_calibration import posterior
 from studies.sand_calibration.posterior import PARAMETERS, number
-from studies.sand_calibration.predictions import (LABORATORY, MOST_CYCLES, ONSET, curves, densities, fit_of, fitted,
-                                                  limits)
+from studies.sand_calibration.predictions import (FIRST_SEED, LABORATORY, MOST_CYCLES, curves, densities, fit_of,
+                                                  fitted, limits)
 from studies.small_strain.published import small_strain_modulus
 from studies.tables import read_csv, write_csv
 
-COLOURS = {"compacted": GREY, "opened": ORANGE}
+EXPANDED = ("TMU6", "TCUI13")
+COLOURS = {"opened": ORANGE}
 
 
 def parameter_rows(fit):
@@ -55,7 +56,7 @@ def peak(curve, pressure):
 
 def drained_of(store, planned, fit, contact):
     """{test: comparison}"""
-    folders = {test: folders_of_fit(fit, curve) for test, curve in curves().items()}
+    folders = {test: folders_of_fit(fit, curve) for test, curve in curves().items() if is_fitted(test)}
     for run in planned:
         if (run.kind, run.contact) == ("drained", contact) and store.is_done(run):
             folders.setdefault(run.test, []).append(store.folder(run))
@@ -104,11 +105,13 @@ def predicted(store, planned, kind):
 
 def undrained_rows(store, planned):
     for test, (run, folders) in predicted(store, planned, "undrained").items():
-        mean, deviation, _, n = ensemble([read_table(folder / "history.csv")["p"].min() / 1e3 for folder in folders])
+        least = [read_table(folder / "history.csv")["p"].min() / 1e3 for folder in folders]
+        mean = np.mean(least)
         measured = next(row["p' (kPa)"] for row in read_csv(LABORATORY / "undrained_anchors.csv")
                         if (row["test"], row["state"]) == (test, "least p'"))
         yield {"contact": run.contact, "test": test, "direction": dict(run.stage)["direction"], "D_r": run.density,
-               "least p' (kPa)": mean, "s.d.": deviation, "n": n, "laboratory (kPa)": measured,
+               "least p' (kPa)": mean, "lowest": min(least), "highest": max(least), "n": len(least),
+               "laboratory (kPa)": measured,
                "difference / p0'": (mean - measured) / run.pressure}
 
 
@@ -131,8 +134,11 @@ def cyclic_rows(store, planned):
 
 def draw_drained(all_compared, path):
     tests = max(map(list, all_compared.values()), key=len)
-    columns = -(-len(tests) // 2)
-    figure, axes = plt.subplots(4, columns, figsize=(1.85 * columns, 7.6), layout="constrained", sharex=True)
+    columns, lines = min(4, len(tests)), -(-len(tests) // 4)
+    figure, axes = plt.subplots(2 * lines, columns, figsize=(1.85 * columns, 3.8 * lines), layout="constrained",
+                                sharex=True, squeeze=False)
+    for axis in axes[-2:, (len(tests) - 1) % columns + 1:].flat:
+        axis.set_visible(False)
     for k, test in enumerate(tests):
         upper, lower = (axes[2 * (k // columns) + row][k % columns] for row in (0, 1))
         upper.set_title(f"{test}, {densities()[test][1]:.0f} kPa, $D_r$ = {densities()[test][0]:.2f}"
@@ -145,7 +151,7 @@ def draw_drained(all_compared, path):
             for axis, row, scale in ((upper, 1, 1e-3), (lower, 2, 100)):
                 band(axis, 100 * laboratory.strain, scale * found.mean[row], scale * found.deviation[row],
                      COLOURS[contact], contact.replace("_", ", "))
-        axes[3][k % columns].set_xlabel("axial strain (%)")
+        axes[-1][k % columns].set_xlabel("axial strain (%)")
         if k % columns == 0:
             upper.set_ylabel("$q$ (kPa)")
             lower.set_ylabel(r"$\varepsilon_v$ (%)")
@@ -153,28 +159,39 @@ def draw_drained(all_compared, path):
     save(figure, path)
 
 
-def draw_predictions(cyclic, undrained, path):
-    """Cycles over the relative density of the laboratory, at 1/4 those of the first loading, triangles where not all
-    specimens reached them; least p' of undrained tests. Bars: range, and standard deviation, of the specimens."""
+def expansion_rows(store, planned):
+    """The best set with other expansions, and its own."""
+    for run in planned:
+        if run.test not in EXPANDED or not store.is_done(run) or run.seed != FIRST_SEED:
+            continue
+        numbers, history = read_summary(store.folder(run)), read_table(store.folder(run) / "history.csv")
+        expansion = fit_of(run.output / run.contact).drawn(0)["specimen.expansion"]
+        yield {"test": run.test, "D_r": run.density,
+               "expansion": expansion if run.expansion is None else run.expansion,
+               "e of packing": numbers["void_ratio"], "Z of packing": history["Z"][0],
+               "least p' (kPa)": history["p"].min() / 1e3,
+               "cycles": cycles_of(store.folder(run)) if run.kind.startswith("cyclic") else None}
+
+
+def draw_predictions(undrained, expanded, path):
+    """Least p' of undrained tests (bars: range of specimens), and over the expansion."""
     figure, ((left, right),) = panels(1, 2)
-    for row in cyclic:
-        middle, least, most = (max(row[name], 0.25) for name in ("cycles, median", "least", "most"))
-        left.plot([row["D_r"]] * 2, [least, most], color=GREY, linewidth=0.8, zorder=1)
-        points = left.scatter(row["D_r"], middle, c=row["q/p0"], vmin=0.15, vmax=0.5, s=18, cmap="viridis", zorder=2,
-                              marker="o" if row[f"reached in {MOST_CYCLES}"] == row["n"] else "^")
-    left.plot([row["D_r"] for row in cyclic], [row["laboratory"] for row in cyclic], "k*", markersize=8,
-              label="laboratory")
-    left.legend(loc="lower right")
-    figure.colorbar(points, ax=left, label="$q_{amp}/p_0'$")
-    left.set(xlabel="$D_r$ of the laboratory", ylabel=f"cycles to $p'/p_0'$ < {ONSET:g}")
-    plain_logarithm(left.yaxis)
     x = np.arange(len(undrained))
-    right.errorbar(x, [row["least p' (kPa)"] for row in undrained], [row["s.d."] for row in undrained],
-                   color=BLUE, fmt="o", markersize=4, capsize=2, linewidth=0.8, label="predicted")
-    right.plot(x, [row["laboratory (kPa)"] for row in undrained], "k*", markersize=8)
-    right.set_xticks(x, [f"{row['test']}\n{row['direction'][:4].rstrip('e')}.\n{row['D_r']:.2f}" for row in undrained],
-                     fontsize=7)
-    right.set_ylabel("least $p'$ (kPa)")
+    mean, lowest, highest = ([row[name] for row in undrained] for name in ("least p' (kPa)", "lowest", "highest"))
+    left.errorbar(x, mean, [np.subtract(mean, lowest), np.subtract(highest, mean)], color=ORANGE, fmt="o", markersize=4,
+                  capsize=2, linewidth=0.8, label="predicted")
+    left.plot(x, [row["laboratory (kPa)"] for row in undrained], "k*", markersize=8, label="laboratory")
+    left.set_xticks(x, [f"{row['test']}\n{row['direction'][:4].rstrip('e')}.\n{row['D_r']:.2f}" for row in undrained],
+                    fontsize=7)
+    left.set_ylabel("least $p'$ (kPa)")
+    left.legend()
+    dense = EXPANDED[0]
+    points = sorted((row["expansion"], row["least p' (kPa)"]) for row in expanded if row["test"] == dense)
+    right.plot(*np.array(points).reshape(-1, 2).T, "o-", color=ORANGE, markersize=4, label=f"{dense}, best set")
+    right.axhline(next(row["laboratory (kPa)"] for row in undrained if row["test"] == dense), color="k", linestyle="--",
+                  linewidth=0.8, label="laboratory")
+    right.set(xlabel="expansion", ylabel="least $p'$ (kPa)")
+    right.legend()
     save(figure, path)
 
 
@@ -183,15 +200,14 @@ def report(store, planned, folder, contacts):
     if not fits:
         return
     compared = {contact: drained_of(store, planned, fit, contact) for contact, fit in fits.items()}
-    write_csv(folder / "fits.csv", [{"packings": contact, "fitted": fit.fitted, "not fitted": fit.blind}
-                                    for contact, fit in fits.items()])
     tables = {"parameters": list(parameter_rows(fits["opened"])) if "opened" in fits else [],
               "drained": [row for contact in fits for row in drained_rows(contact, compared[contact])],
               "small_strain": list(small_strain_rows(store, planned)),
-              "undrained": list(undrained_rows(store, planned)), "cyclic": list(cyclic_rows(store, planned))}
+              "undrained": list(undrained_rows(store, planned)), "cyclic": list(cyclic_rows(store, planned)),
+              "expansion": list(expansion_rows(store, planned))}
     for name, rows in tables.items():
         if rows:
             write_csv(folder / f"{name}.csv", rows, 4)
     draw_drained(compared, folder / "drained.png")
-    if tables["cyclic"] and tables["undrained"]:
-        draw_predictions(tables["cyclic"], tables["undrained"], folder / "predictions.png")
+    if tables["undrained"]:
+        draw_predictions(tables["undrained"], tables["expansion"], folder / "predictions.png")
