@@ -146,18 +146,16 @@ def surface_amplification(column):
     largest and at half that frequency."""
     if not is_box(column) or not column.moving or column.scene["mesh"]["sides"] != "free-field":
         return None
-    interval = np.diff(column.maps["time"]).max()
+    spectra = [fourier(*column.motion(f"input_a{axis}")) for axis in column.moving]
+    largest = [frequencies[np.argmax(np.abs(amplitude))] for frequencies, amplitude in spectra]
+    if np.diff(column.maps["time"]).max() > 1 / (8 * max(largest)):
+        note(f"fig_amplification needs profiles every {1 / (8 * max(largest)):.2g} s (output.profile_interval)")
+        return None
     figure, panels = plt.subplots(len(column.moving), 1, figsize=(7.2, 2.6 * len(column.moving)), squeeze=False,
                                   sharex=True, layout="constrained")
-    for axes, axis in zip(panels[:, 0], column.moving):
-        frequencies, amplitude = fourier(*column.motion(f"input_a{axis}"))
-        largest = frequencies[np.argmax(np.abs(amplitude))]
-        if interval > 1 / (8 * largest):
-            note(f"fig_amplification needs profiles every {1 / (8 * largest):.2g} s (output.profile_interval)")
-            plt.close(figure)
-            return None
-        x, ratios = amplification(column, axis, (largest / 2, largest))
-        for f, ratio, colour in zip((largest / 2, largest), ratios, (BLACK, BLUE)):
+    for axes, axis, f_input in zip(panels[:, 0], column.moving, largest):
+        x, ratios = amplification(column, axis, (f_input / 2, f_input))
+        for f, ratio, colour in zip((f_input / 2, f_input), ratios, (BLACK, BLUE)):
             axes.plot(x, ratio, color=colour, label=f"{f:.3g} Hz")
         axes.set(ylim=(0, 1.2 * ratios.max()), ylabel=f"Amplification along {axis}")
         axes.legend(loc="upper right", ncols=2)

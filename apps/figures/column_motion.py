@@ -3,7 +3,6 @@
 import numpy as np
 
 from .column_analysis import exact_transfer, response_spectrum, smoothed_transfer, transfer_function
-from .column_box import is_box
 from .column_soil import MOST_DEPTHS
 from .common import BLACK, BLUE, GREY, ORANGE, letters, note, plt
 from .drawing import draws
@@ -154,7 +153,7 @@ def draw_transfer(column, axes, axis):
     surface, dt = column.motion(f"surface_a{axis}")
     base, _ = column.motion(f"input_a{axis}")
     f_max = highest_frequency(column, dt)
-    layer = None if is_box(column) else column.uniform_elastic()
+    layer = column.uniform_elastic()
     f, ratio, strong = transfer_function(surface, base, dt, f_max)
     if strong.any():
         f_max = min(f_max, 1.05 * f[strong][-1])

@@ -223,7 +223,10 @@ class Column:
                 if above["permeability"] < below["permeability"] and depth > self.water["table"] + 1e-6]
 
     def uniform_elastic(self):
-        """The one layer if all are elastic and alike; else None."""
+        """The one layer if all are elastic and alike, and level between tied sides; else None."""
+        mesh = self.scene.get("mesh", {})
+        if "file" in mesh or mesh.get("sides", "tied") != "tied":
+            return None
         if not self.layers or any(layer["material"] != "elastic" for layer in self.layers):
             return None
         first = {**self.layers[0], "height": sum(layer["height"] for layer in self.layers)}

@@ -74,7 +74,11 @@ void Dynamics::find_pressure()
   for (std::size_t i = 0; i < n; i += 3)
     for (std::size_t c = 0; c < 3; ++c)
       next[i + c] = update[i + c] * (mass[i + c] * frame_[c] + load[i + c] - force[i + c]) + keep[i + c] * v[i + c];
-  pressure_system_->solve(next_, v_, p_, p_before_, {-frame_[0], -frame_[1], -frame_[2]}, p_next_);
+  std::optional<Vector> inflow;
+  for (const auto &field : settings_.free_fields)
+    field->add_inflow(inflow ? *inflow : inflow.emplace(space_.pressure_vector()));
+  pressure_system_->solve(next_, v_, p_, p_before_, {-frame_[0], -frame_[1], -frame_[2]}, inflow ? &*inflow : nullptr,
+                          p_next_);
   p_next_.swap(p_before_);
   p_before_.swap(p_);
   pressure_system_->force(p_, pore_force_);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace isostat
 {
@@ -79,6 +80,13 @@ void FreeField::join(const FiniteElementSpace &block)
   if (!block.on_every_rank(fits))
     throw InputError("mesh: a side with a free field has nodes that are not those of a column at its end; it must be "
                      "one vertical line.");
+  corners_.clear();
+  if (column_.settings().drainage == Drainage::coupled)
+    for (unsigned k = 0; k < space_->cell_pressures.size(); ++k)
+      if (const unsigned i = space_->cell_pressures[k];
+          std::ranges::count(space_->cell_pressures.begin(), space_->cell_pressures.begin() + k, i) == 0)
+        if (const long in_block = block.find_pressure({x, 0, space_->corner[k][2]}); in_block >= 0)
+          corners_.push_back({static_cast<unsigned>(in_block), i});
 }
 
 void FreeField::add_dashpots(Vector &coefficients) const
@@ -92,7 +100,15 @@ void FreeField::step(Vector &load)
 {
   const std::span<const Stress> now = column_.skeleton_stresses();
   const std::vector<Stress> stresses(now.begin(), now.end()); // the column's momentum (4) at this time
-  column_.step();
+  try
+    {
+      column_.step();
+    }
+  catch (const RunFailure &failure)
+    {
+      throw RunFailure(fmt::format("in the level ground next to the side of {} x: {}",
+                                   side_ == Face::x_low ? "the lowest" : "the highest", failure.what()));
+    }
   const std::vector<double> pressure = column_.point_pressure(); // of the same time
   const double normal = side_ == Face::x_low ? -1 : 1;
   traction_ = 0;
@@ -105,5 +121,31 @@ void FreeField::step(Vector &load)
     for (unsigned c = 0; c < 3; ++c)
       load.local_element(i + c) +=
           traction_.local_element(k + c) + dashpots_.local_element(k + c) * column_.velocity(k + c);
+}
+
+void FreeField::add_inflow(Vector &inflow) const
+{
+  const bool varies = space_->mesh().soil.permeability_varies();
+  const PorousPoints points =
+      porous_points(*space_, varies ? volume_strains(*space_, column_.displacement()) : std::vector<double>());
+  const DynamicsSettings &settings = column_.settings();
+  const double of_base =
+      settings.base.compliant() ? 0 : settings.motion[0].acceleration(column_.time() - column_.time_step());
+  const std::size_t n_i = space_->pressure_nodes_per_cell();
+  Vector flow = space_->pressure_vector();
+  for (std::size_t q = 0; q < space_->n_points(); ++q)
+    {
+      const std::size_t cell = q / space_->n_gauss, gauss = q % space_->n_gauss;
+      double acceleration = of_base;
+      for (std::size_t a = 0; a < space_->n_nodes; ++a)
+        acceleration += space_->shape[gauss * space_->n_nodes + a] *
+                        column_.acceleration(space_->cell_dofs[(cell * space_->n_nodes + a) * 3]);
+      for (std::size_t i = 0; i < n_i && space_->cell_is_wet[cell]; ++i)
+        flow.local_element(space_->cell_pressures[cell * n_i + i]) += space_->weight[q] * points.mobility[q] *
+                                                                      points.fluid_density * acceleration *
+                                                                      space_->pressure_shape[gauss * n_i + i];
+    }
+  for (const auto &[i, k] : corners_)
+    inflow.local_element(i) += (side_ == Face::x_low ? -1 : 1) * flow.local_element(k);
 }
 } // namespace isostat

@@ -9,7 +9,8 @@ namespace isostat
 /// doi:10.1061/JMCEA3.0001144) against its motion relative to the column (Zienkiewicz, Bicanic & Shen 1989),
 /// docs/theory_column.md (39a):
 ///
-///     t = (sigma_c - sigma_0) n - rho V (v - v_c)        V = V_p along n, with the stiffness of pore water, else V_s
+///     t = (sigma_c - sigma_0) n - rho V (v - v_c)        V = V_p along n, with pore water's stiffness, else V_s  (39a)
+///     q_n = -kb rho_f a_c . n                       water that leaves, m/s                               (39b)
 ///
 /// So level ground moves like the column to round-off, and waves that leave along n are absorbed.
 /// tested: tests/fem/solve/free_field_test.cpp
@@ -27,13 +28,15 @@ public:
   void add_dashpots(Vector &coefficients) const; ///< rho V A, N s/m
   /// A step of the column, and what it exerts on the side at the start of the step: N.
   void step(Vector &load);
+  /// What water (39b) brings in at that time, m3/s.
+  void add_inflow(Vector &inflow) const;
 
   Dynamics &column() { return column_; }
 
 private:
   struct Node
   {
-    unsigned in_block, in_column; ///< displacement unknown along x; y and z follow
+    unsigned in_block, in_column; ///< displacement unknown along x, y and z follow; or pressure unknown
   };
   template <typename Value>
   void integrate(const Value &value, Vector &sums) const;
@@ -43,7 +46,7 @@ private:
   std::unique_ptr<Material> material_;
   Dynamics column_;
   std::vector<Stress> initial_;
-  std::vector<Node> nodes_;
-  Vector dashpots_, traction_; ///< of the column's unknowns
+  std::vector<Node> nodes_, corners_; ///< of the side; corners only with water that flows
+  Vector dashpots_, traction_;        ///< of the column's unknowns
 };
 } // namespace isostat

@@ -188,7 +188,8 @@ PressureSystem::PressureSystem(const FiniteElementSpace &space, const CellGeomet
 PressureSystem::~PressureSystem() = default;
 
 void PressureSystem::solve(const Vector &v_star, const Vector &v_before, const Vector &p_before,
-                           const Vector &p_before_that, const std::array<double, 3> &base_acceleration, Vector &p) const
+                           const Vector &p_before_that, const std::array<double, 3> &base_acceleration,
+                           const Vector *inflow, Vector &p) const
 {
   const Matrices &m = *matrices_;
   const std::size_t n = m.work.locally_owned_size();
@@ -219,6 +220,8 @@ void PressureSystem::solve(const Vector &v_star, const Vector &v_before, const V
     if (base_acceleration[axis] != 0)
       for (std::size_t i = 0; i < n; ++i)
         rhs[i] -= base_acceleration[axis] * m.base_flow[axis].local_element(i);
+  for (std::size_t i = 0; inflow && i < n; ++i)
+    rhs[i] += inflow->local_element(i);
   for (unsigned held : m.held)
     rhs[held] = 0;
   m.of_p.release();

@@ -34,8 +34,9 @@ public:
   ~PressureSystem();
 
   /// p from v* and what came before.  @param base_acceleration  constant over the mesh, m/s2
+  /// @param inflow  added to the right-hand side: water that comes in over the boundary, m3/s; null: none
   void solve(const Vector &v_star, const Vector &v_before, const Vector &p_before, const Vector &p_before_that,
-             const std::array<double, 3> &base_acceleration, Vector &p) const;
+             const std::array<double, 3> &base_acceleration, const Vector *inflow, Vector &p) const;
   /// f = G^T p, N.
   void force(const Vector &p, Vector &f) const;
   LinearEffort effort() const; ///< of iterations

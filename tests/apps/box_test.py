@@ -252,7 +252,7 @@ class Box(ColumnTest):
 class FreeField(ColumnTest):
     """A slope of sand on rock, and level ground."""
 
-    SLOPE = (BOX.replace('"walls"', '"free-field"').replace("drainage", "relative_viscosity = 50\ndrainage").replace(
+    SLOPE = (BOX.replace('"walls"', '"free-field"').replace(
         '"0 m", "12 m"', '"0 m", "4 m", "8 m", "12 m"').replace('"3.6 m", "2.4 m"', '"3 m", "3 m", "3.6 m", "3.6 m"')
              + '[base]\nkind = "compliant"\ndensity = "2300 kg/m3"\nshear_velocity = "500 m/s"\n')
 
