@@ -135,7 +135,7 @@ void LinearSolver::read_options()
     petsc_check(PCFactorSetMatOrderingType(pc, p.direct.ordering));
   if (p.prepare)
     p.prepare(p.ksp);
-  petsc_check(KSPGMRESSetRestart(p.ksp, 200)); // with 30 soft soil takes half as many iterations again
+  petsc_check(KSPGMRESSetRestart(p.ksp, 200)); // PETSc's 30 need more iterations: docs/column.md
   check_options(KSPSetFromOptions(p.ksp), p.given, p.prefix);
   KSPType method = nullptr;
   PCType preconditioner = nullptr;

@@ -12,26 +12,33 @@ from studies.leap_slope import cyclic, drained, results
 DEFAULTS, QUICK, PAGE = {"seeds": 5}, {"seeds": 1}, "leap"
 GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS = 2, 3, 1
 PACKINGS = 20  # of which each point of a slope draws one
+OPENED_SEEDS, EXPANSION = 3, 0.006  # of slopes run after the comparison; what undrained dense Karlsruhe sand asks for
+OPENED = {"specimen.expansion": EXPANSION, "specimen.preparation_friction": "3 deg"}
 IWAN = {"material": "iwan", "relative_density": 0.65, "reference_pressure": "100 kPa", "k0": 0.5,
         "shear_velocity": "228 m/s"}  # G of Hardin and Richart (1963), as the packings'
 
 
-def library_of(options):
-    return options.output / "library_300.h5"
+def library_of(options, name):
+    return options.output / f"library_{name}.h5"
 
 
 def prepare(options, executor):
-    path = library_of(options)
-    if not path.exists():
-        make_library(parse([str(SCENES / "rve_library_ottawa.toml"), "-n", str(PACKINGS), "-o", str(path)]), executor)
+    for name, keys in (("slope", {}), ("opened", OPENED)):
+        path = library_of(options, name)
+        keys = {"grading.grains": 300} | keys
+        changes = [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]
+        if not path.exists():
+            make_library(parse([str(SCENES / "rve_library_ottawa.toml"), "-n", str(PACKINGS), "-o", str(path),
+                                *changes]), executor)
 
 
-def slopes(options):
-    file, scene = library_of(options), SCENES / "column/slope_leap.toml"
+def slopes(options, name, seeds, keys):
+    """Opened packings stiffen by more as p' comes back: smaller steps."""
+    file, scene = library_of(options, name), SCENES / "column/slope_leap.toml"
     short = {"analysis.duration": "0.2 s"} if options.quick else {}
-    keys = {"grains.library": file, "grains.cache": options.output / "in_situ.h5"} | short
-    return [Run(("slope", lot), scene, tuple((keys | {"layer.0.lot": lot}).items()), 15 if short else 150, (file,))
-            for lot in range(options.seeds)]
+    keys = {"grains.library": file, "grains.cache": options.output / f"in_situ_{name}.h5"} | keys | short
+    return [Run((name, lot), scene, tuple((keys | {"layer.0.lot": lot}).items()), 15 if short else 150, (file,))
+            for lot in range(seeds)]
 
 
 def boxes():
@@ -42,8 +49,9 @@ def boxes():
 
 def runs(options):
     grid_seeds, cyclic_seeds, check_seeds = (1, 1, 1) if options.quick else (GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS)
-    return [*drained.grid(grid_seeds), *slopes(options), *boxes(), *cyclic.runs(cyclic_seeds),
-            *drained.checks(check_seeds)]
+    return [*drained.grid(grid_seeds), *slopes(options, "slope", options.seeds, {}),
+            *slopes(options, "opened", min(options.seeds, OPENED_SEEDS), {"analysis.safety": 0.4}), *boxes(),
+            *cyclic.runs(cyclic_seeds), *drained.checks(check_seeds)]
 
 
 def report(store, planned, folder):

@@ -14,6 +14,7 @@ from studies.tables import read_csv, write_csv
 
 DEPTHS = (0.8, 1.8, 2.8, 3.8)  # m, near those of the centrifuges' transducers, 1 to 4 m
 BUOYANT = 10.08  # unit weight of the scene, kN/m3
+PACKINGS = {"slope": "compacted", "opened": "opened"}
 TIMES = np.arange(0, 20, 0.05)  # s, of curves
 
 
@@ -84,7 +85,7 @@ def slope_rows(store, planned):
         if run.case[0] == "box":
             continue
         _, ru = slope_of(folder)
-        yield {"lot": run.case[1], "downslope (m)": parsed(folder)["downslope"],
+        yield {"packings": PACKINGS[run.case[0]], "lot": run.case[1], "downslope (m)": parsed(folder)["downslope"],
                **{f"largest r_u at {z:g} m": float(ru[:, k].max()) for k, z in enumerate(DEPTHS)}}
 
 
@@ -117,29 +118,28 @@ def draw_drained(rows, path):
 
 
 def draw_slopes(members, box, path):
-    """Displacement of the surface, and r_u at the depths: members grey, medians coloured."""
-    figure, axes = plt.subplots(1, 3, figsize=(7.2, 2.7), layout="constrained")
+    """Displacement of the surface, and r_u at the depths: {packings: members}, thin, and their medians."""
+    figure, axes = plt.subplots(1, 3, figsize=(7.2, 2.9), layout="constrained")
     for letter, axis in zip("abc", axes):
         axis.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9)
         axis.set_xlabel("time (s)")
-    for moved, _ in members:
-        axes[0].plot(TIMES, 1e3 * moved, color=GREY, linewidth=0.6, alpha=0.6)
-    axes[0].plot(TIMES, 1e3 * np.median([moved for moved, _ in members], axis=0), color=BLUE,
-                 label=f"packings, median of {len(members)}")
+    for (name, runs), colour in zip(members.items(), (BLUE, GREEN)):
+        curves = [np.column_stack([1e3 * moved, ru[:, 0], ru[:, 3]]) for moved, ru in runs]
+        for axis, of_axis in zip(axes, np.transpose(curves, (2, 0, 1))):
+            for curve in of_axis:
+                axis.plot(TIMES, curve, color=colour, linewidth=0.5, alpha=0.4)
+            axis.plot(TIMES, np.median(of_axis, axis=0), color=colour, label=f"{name} packings, median of {len(runs)}")
     if box is not None:
         axes[0].plot(box["time"], 1e3 * box["surface_ux"], color=ORANGE, label="box of Iwan sand")
+    axes[0].set_yscale("symlog", linthresh=10)
     axes[0].set_ylabel("surface downslope (mm)")
-    axes[0].set_ylim(top=1.4 * axes[0].get_ylim()[1])
-    axes[0].legend(loc="upper left")
     for k, axis, depth in ((0, axes[1], 1), (3, axes[2], 4)):
-        for _, ru in members:
-            axis.plot(TIMES, ru[:, k], color=GREY, linewidth=0.6, alpha=0.6)
-        axis.plot(TIMES, np.median([ru[:, k] for _, ru in members], axis=0), color=BLUE)
         low, high = centrifuge()[depth]
         axis.errorbar([13.7], [(low + high) / 2], [(high - low) / 2], fmt="k*", markersize=7, capsize=2, linewidth=0.8,
                       label=f"centrifuge CU1, {depth} m")
-        axis.legend(loc="upper left")
-        axis.set(ylabel=f"$r_u$ at {DEPTHS[k]:g} m", ylim=(-0.05, 1.6))
+        axis.legend(handles=axis.containers, loc="upper right")
+        axis.set(ylabel=f"$r_u$ at {DEPTHS[k]:g} m", ylim=(-0.05, 1.7))
+    legend_below(figure, axes[0], 0.11, 3)
     save(figure, path)
 
 
@@ -154,7 +154,9 @@ def report(store, planned, folder):
     if tables["drained"]:
         draw_drained(tables["drained"], folder / "drained.png")
     columns = {run.case: path for run, path in done(store, planned, "column")}
-    members = [slope_of(path) for case, path in columns.items() if case[0] == "slope"]
+    members = {name: [slope_of(path) for case, path in columns.items() if case[0] == kind]
+               for kind, name in PACKINGS.items()}
+    members = {name: runs for name, runs in members.items() if runs}
     if members:
         box = read_table(columns["box", "iwan"] / "history.csv") if ("box", "iwan") in columns else None
         draw_slopes(members, box, folder / "slope.png")

@@ -43,7 +43,7 @@ TEST(Scenes, AllParseAndSayWhatTheyShow)
       ++n_scenes;
       check_ready_scene(entry.path());
     }
-  EXPECT_EQ(n_scenes, 24);
+  EXPECT_EQ(n_scenes, 25);
 }
 
 /// A scene of the cell for comparison with one of the box differs from it in words and in the domain only.
