@@ -37,9 +37,9 @@ void run(Drainage drainage, double saturation = 1, const std::vector<Refinement>
   Elastic material({.shear_modulus = 5e7, .poisson_ratio = 0.25}, space.n_points());
   DynamicsSettings settings{.time_step = refine.empty() ? 5e-4 : 2e-4, .drainage = drainage};
   for (int axis = 0; axis < 3; ++axis)
-    settings.motion[axis] = ricker_motion(1 - 0.2 * axis, 15 + axis, 0.1, 1e-3);
+    settings.motion[axis] = ricker_motion(1 - 0.2 * axis, 15 + axis, refine.empty() ? 0.1 : 0.02, 1e-3);
   Dynamics run(space, material, settings);
-  for (int k = 0; k < 400; ++k)
+  for (int k = 0; k < (refine.empty() ? 400 : 100); ++k)
     run.step();
   const long top = space.find_dof({0, 0, 10}, 0), middle = space.find_pressure({0, 0, 6});
   const auto at = [](const Vector &v, long i) { return shared(i < 0 ? 0 : v.local_element(i), i >= 0); };
