@@ -203,9 +203,16 @@ void check_refinement(const SceneDocument &document, const ColumnScene &scene)
           document.refuse(fmt::format("refine.{}.{}", k, key),
                           fmt::format("must have {} lengths: {} and height above the base.", dimension,
                                       dimension == 2 ? "x" : "x, y"));
-      for (unsigned d = 0; d < dimension && !from.empty() && !to.empty(); ++d)
-        if (!(from[d] < to[d]))
-          document.refuse(fmt::format("refine.{}.to", k), "must be above refine.from along each axis.");
+      for (unsigned d = 0; d < dimension; ++d)
+        {
+          const double end = d + 1 < dimension ? scene.mesh.width : scene.height();
+          if (!to.empty() && !(to[d] > (from.empty() ? 0 : from[d])))
+            document.refuse(fmt::format("refine.{}.to", k), "must be above refine.from, or 0 m, along each axis.");
+          if (!scene.mesh.given && !from.empty() && !(from[d] < end))
+            document.refuse(fmt::format("refine.{}.from", k),
+                            fmt::format("must be below the end of the soil, {} m {}.", number_text(end),
+                                        d + 1 < dimension ? "across" : "high"));
+        }
     }
 }
 

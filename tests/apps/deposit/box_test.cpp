@@ -51,6 +51,8 @@ TEST(BoxScene, RefinementsComeThroughTextAndGoToTheMesh)
   expect_refused(sand + dry + above + dynamic, {"column.toml:8", "refine", "needs mesh.dimension 2 or 3"});
   expect_refused(box(refine), {"refine.0.from", "must have 2 lengths: x and height"}, {"refine.0.from=[\"1 m\"]"});
   expect_refused(box(refine), {"refine.0.to", "must be above"}, {"refine.0.to=[\"5 m\", \"1 m\"]"});
+  expect_refused(box(refine), {"refine.0.from", "below the end of the soil"},
+                 {"refine.0.from=[\"50 m\", \"1 m\"]", "refine.0.to=[\"60 m\", \"4 m\"]"});
   expect_refused(box(refine), {"refine.0.levels", "in [1, 8]"}, {"refine.0.levels=9"});
 }
 
