@@ -150,6 +150,12 @@ def check_mirrors(root, test):
             "what spans several belongs to tests/verification"]
 
 
+def check_run(root, test):
+    """Nothing, or that ctest does not know this file."""
+    called = re.search(rf"\b{test.name.removesuffix('_test.py')}\b", (root / "tests/CMakeLists.txt").read_text())
+    return [] if called else [f"{test}: is not in tests/CMakeLists.txt, so nothing runs it"]
+
+
 def blank(text):
     return re.sub(r"[^\n]", " ", text)
 
@@ -216,6 +222,8 @@ def check_file(root, path):
         problems += check_tested(root, name, text)
     if name.name.endswith("_test.cpp") and name.parts[:2] in MIRRORS:
         problems += check_mirrors(root, name)
+    if name.parts[0] == "tests" and name.name.endswith("_test.py"):
+        problems += check_run(root, name)
     if name.parts[0] == "tests" and name.as_posix() not in HELPERS:
         bare = BARE[".py" if path.suffix == ".py" else ".cpp"]
         problems += [f"{name}:{at}: a tolerance without its reason: {line.strip()[:80]}"
