@@ -268,7 +268,7 @@ Mat6 work(const Element &e, const Mat6 &virtual_deformation, const Mat6 &deforma
 
 Mat6 checked(const Mat6 &sum, double volume, Sliding sliding)
 {
-  const Mat6 stiffness = sum / volume;
+  Mat6 stiffness = sum / volume;
   if (!stiffness.allFinite())
     throw RunFailure("elastic stiffness: not a number; look for such values in normals, overlaps and the cell");
   if (sliding == Sliding::plastic)

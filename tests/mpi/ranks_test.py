@@ -17,7 +17,7 @@ class Ranks(ColumnTest):
 
     def test_numbers(self):
         _, expected = self.numbers_on(1)
-        self.assertEqual(len(expected), 6)
+        self.assertEqual(len(expected), 5)
         self.assertTrue((np.abs(expected[:, 1]) > 1e-5).all(), expected)
         for ranks in (2, 3):
             fewest, found = self.numbers_on(ranks)
