@@ -34,6 +34,8 @@ FreeField::FreeField(Face side, std::unique_ptr<const FiniteElementSpace> column
   std::vector<WaveModuli> moduli(space_->n_points());
   material_->wave_moduli(moduli);
   const bool coupled = column_.settings().drainage == Drainage::coupled;
+  if (coupled)
+    porous_ = porous_points(*space_);
   const std::vector<PoreFluid> fluids = coupled ? pore_fluids(*space_) : std::vector<PoreFluid>();
   integrate(
       [&](std::size_t q, std::size_t c) {
@@ -109,6 +111,8 @@ void FreeField::step(Vector &load)
       throw RunFailure(fmt::format("in the level ground next to the side of {} x: {}",
                                    side_ == Face::x_low ? "the lowest" : "the highest", failure.what()));
     }
+  if (!corners_.empty() && space_->mesh().soil.permeability_varies())
+    porous_ = porous_points(*space_, volume_strains(*space_, column_.displacement()));
   const std::vector<double> pressure = column_.point_pressure(); // of the same time
   const double normal = side_ == Face::x_low ? -1 : 1;
   traction_ = 0;
@@ -125,9 +129,6 @@ void FreeField::step(Vector &load)
 
 void FreeField::add_inflow(Vector &inflow) const
 {
-  const bool varies = space_->mesh().soil.permeability_varies();
-  const PorousPoints points =
-      porous_points(*space_, varies ? volume_strains(*space_, column_.displacement()) : std::vector<double>());
   const DynamicsSettings &settings = column_.settings();
   const double of_base =
       settings.base.compliant() ? 0 : settings.motion[0].acceleration(column_.time() - column_.time_step());
@@ -141,8 +142,8 @@ void FreeField::add_inflow(Vector &inflow) const
         acceleration +=
             space_->shapes(q)[a] * column_.acceleration(space_->cell_dofs[(cell * space_->n_nodes + a) * 3]);
       for (std::size_t i = 0; i < n_i && space_->cell_is_wet[cell]; ++i)
-        flow.local_element(space_->cell_pressures[cell * n_i + i]) += space_->weight[q] * points.mobility[q] *
-                                                                      points.fluid_density * acceleration *
+        flow.local_element(space_->cell_pressures[cell * n_i + i]) += space_->weight[q] * porous_.mobility[q] *
+                                                                      porous_.fluid_density * acceleration *
                                                                       space_->pressure_shapes(q)[i];
     }
   for (const auto &[i, k] : corners_)

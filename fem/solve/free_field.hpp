@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "fem/solve/dynamics.hpp"
+#include "fem/water/permeability.hpp"
 
 namespace isostat
 {
@@ -46,6 +47,7 @@ private:
   std::unique_ptr<Material> material_;
   Dynamics column_;
   std::vector<Stress> initial_;
+  PorousPoints porous_;               ///< of the column, only with water that flows
   std::vector<Node> nodes_, corners_; ///< of the side; corners only with water that flows
   Vector dashpots_, traction_;        ///< of the column's unknowns
 };

@@ -4,6 +4,7 @@
 #include "fem/space/axes.hpp"
 #include "fem/space/discretisation.hpp"
 #include "tests/support/columns.hpp"
+#include "tests/support/fields.hpp"
 #include "tests/support/near.hpp"
 
 #include <gmock/gmock.h>
@@ -24,18 +25,6 @@ MeshSpec uneven(unsigned degree)
           .degree = degree};
 }
 
-/// u_i = sum_j h_ij x_j + 1 at every node.
-template <int dim>
-Vector linear_field(const Discretisation<dim> &space, const Gradient &h)
-{
-  Vector u = space.displacement_vector();
-  const std::vector<Place> places = space.node_places();
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      u.local_element(i) += h[3 * (i % 3) + j] * places[i][j] + (j == 0 ? 1 : 0);
-  return u;
-}
-
 constexpr test::Tolerance summed{1e-12, "round-off of sums over all points"};
 
 template <int dim>
@@ -44,7 +33,7 @@ void patch_test(unsigned degree)
   const Discretisation<dim> space(uneven(degree), {});
   Gradient h = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   std::vector<Gradient> found(space.n_points());
-  space.gradients(linear_field(space, h), found);
+  space.gradients(test::linear_field(space, h), found);
   for (std::size_t i = 0; i < 9; ++i) // along axes that are not meshed nothing varies
     if (std::find(mesh_axes[dim].begin(), mesh_axes[dim].end(), static_cast<int>(i % 3)) == mesh_axes[dim].end())
       h[i] = 0;
@@ -59,7 +48,7 @@ void patch_test(unsigned degree)
   space.add_internal_force(constant, f);
   const double volume = std::accumulate(space.weight.begin(), space.weight.end(), 0.0);
   const double power = 1 * h[0] + 2 * h[4] + 3 * h[8] + 4 * (h[5] + h[7]) + 5 * (h[2] + h[6]) + 6 * (h[1] + h[3]);
-  const double work = f * linear_field(space, h);
+  const double work = f * test::linear_field(space, h);
   const std::vector<Place> places = space.node_places();
   double inside = 0;
   const double high[] = {4, 2.5, 5};

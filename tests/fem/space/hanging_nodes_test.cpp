@@ -5,6 +5,7 @@
 #include "fem/solve/statics.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/drawn_mesh.hpp"
+#include "tests/support/fields.hpp"
 #include "tests/support/near.hpp"
 
 #include <gmock/gmock.h>
@@ -40,17 +41,6 @@ MeshSpec refined_drawing(unsigned degree)
   spec.degree = degree;
   spec.refine = {{{0.4, 0.4, 0.4}, {0.9, 0.6, 0.9}, 2}};
   return spec;
-}
-
-/// u_i = sum_j h_ij x_j + 1 at every node that has an unknown.
-Vector linear_displacement(const FiniteElementSpace &space, const Gradient &h)
-{
-  Vector u = space.displacement_vector();
-  const std::vector<Place> places = space.node_places();
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      u.local_element(i) += h[3 * (i % 3) + j] * places[i][j] + (j == 0 ? 1 : 0);
-  return u;
 }
 
 constexpr test::Tolerance of_sums{1e-12, "round-off of sums over all points"};
@@ -90,7 +80,7 @@ void check_patch(const FiniteElementSpace &space)
 {
   const unsigned dim = space.dimension;
   Gradient h = {1, 2, 3, 4, 5, 6, 7, 8, 9};
-  const Vector u = linear_displacement(space, h);
+  const Vector u = test::linear_field(space, h);
   std::vector<Gradient> found(space.n_points());
   space.gradients(u, found);
   double worst = 0, hanging = 0, inside = 0, least = far;
@@ -157,42 +147,14 @@ TEST(HangingNodes, PatchTests)
 
 namespace
 {
-/// Largest omega^2 of the mesh by power iteration on M^-1 K.
-double omega_squared(const FiniteElementSpace &space, Material &material)
-{
-  const Vector mass = space.lumped_mass();
-  Vector x = space.displacement_vector(), f = x;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    x.local_element(i) = mass.local_element(i) > 0 ? std::sin(1.0 + 7.0 * static_cast<double>(i)) : 0;
-  std::vector<Gradient> h(space.n_points());
-  std::vector<Stress> stresses(space.n_points());
-  double omega2 = 0;
-  for (int k = 0; k < 500; ++k)
-    {
-      x /= x.l2_norm();
-      space.gradients(x, h);
-      material.trial(h, stresses);
-      f = 0;
-      space.add_internal_force(stresses, f);
-      omega2 = 0;
-      for (std::size_t i = 0; i < x.size(); ++i)
-        {
-          const double m = mass.local_element(i);
-          f.local_element(i) = m > 0 ? f.local_element(i) / m : 0;
-          omega2 += x.local_element(i) * f.local_element(i);
-        }
-      x = f;
-    }
-  return omega2;
-}
-
 /// The bound of omega over the exact one.
 double bound_over_exact(const FiniteElementSpace &space, double poisson)
 {
   Elastic soil({5e7, poisson}, space.n_points());
   std::vector<WaveModuli> moduli(space.n_points());
   soil.wave_moduli(moduli);
-  return std::sqrt(space.max_frequency_squared(space.frequencies(space), moduli, false) / omega_squared(space, soil));
+  return std::sqrt(space.max_frequency_squared(space.frequencies(space), moduli, false) /
+                   test::omega_squared(space, soil, 500));
 }
 } // namespace
 
