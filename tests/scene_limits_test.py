@@ -54,6 +54,8 @@ STATED = {
         "load.surcharge_to": "Between `surcharge_from` and the width", "grains.library": "Needed by soil of grains",
         "grains.path_depths": "Within the soil", "grains.snapshot_depths": "Within the soil",
         "analysis.kind": "A consolidation needs", "analysis.petsc": "for the linear systems",
+        "analysis.scheme": "dry or coupled soil of formulas", "analysis.spectral_radius": "Of implicit steps",
+        "analysis.safety": "Of explicit steps", "analysis.viscosity": "0 ms of implicit steps",
         "analysis.last_time": "After `first_time`",
         "analysis.duration": "At most 1e15 time steps", "analysis.from": "on a boundary between elements",
         "analysis.to": "likewise", "analysis.displacement": "less than the extent of the soil",

@@ -24,7 +24,17 @@ constexpr Key analysis_key[] = {
    .text = "Time step, checked against the stable one; left out: `safety` times the stable one at the start."},
   {.path = "safety", .field = member<&ColumnAnalysis::safety>, .value = "0.8", .range = to_one,
    .reason = "because beyond the stable step the motion explodes", .kinds = of_waves,
-   .text = "Fraction of the stable time step that is used."},
+   .text = "Fraction of the stable time step that is used. Of explicit steps."},
+  {.path = "scheme", .field = member<&ColumnAnalysis::scheme>, .value = "explicit", .choices = scheme_names,
+   .kinds = of_waves,
+   .text = "Explicit: central differences, small steps that cost little. Implicit: generalised alpha, steps of any size, "
+           "each with a Newton solution; for stiff or thin layers and long, slow motions. It needs a `time_step`, a "
+           "twentieth of the shortest period of interest. Of dry or coupled soil of formulas with small strain, without "
+           "free fields and viscosity. docs/column.md."},
+  {.path = "spectral_radius", .field = member<&ColumnAnalysis::spectral_radius>, .value = "0.8",
+   .range = {0, 1}, .reason = "because a larger one would feed vibrations", .kinds = of_waves,
+   .text = "Of implicit steps: the part that one leaves of vibrations much faster than it. 1: all, and "
+           "energy is conserved; 0: none. Lower ones damp more of what is slow, too."},
   {.path = "mass_damping", .field = member<&ColumnAnalysis::mass_damping>, .unit = unit::per_s, .value = "0 1/s",
    .range = not_negative, .kinds = of_waves,
    .text = "a_M: a force -a_M times mass and velocity; it damps frequency f by the fraction a_M / (4 pi f) of "
@@ -40,8 +50,8 @@ constexpr Key analysis_key[] = {
    .value = "0.1 ms", .range = not_negative, .reason = "because a negative one would feed vibrations", .kinds = of_waves,
    .text = "Viscosity beta of the skeleton over its modulus, which acts above `highest_frequency` f_c: it damps "
            "frequency f by the fraction pi f beta f^2 / (f^2 + f_c^2) of critical (of 0.1 ms, 0.08 % at 12.5 Hz, 1.5 % "
-           "at 58 Hz). Left out: 0 ms where all layers are elastic, with or without `damping`, whose response is that "
-           "of the closed form then; else 0.1 ms, without which layers and elements ring on "
+           "at 58 Hz). 0 ms of implicit steps. Left out: 0 ms where all layers are elastic, with or without `damping`, "
+           "whose response is that of the closed form then; else 0.1 ms, without which layers and elements ring on "
            "(docs/results/column_dissipation.md). Lowers the stable time step dt to sqrt(beta^2 + dt^2) - beta: by 10 % "
            "where it is 1 ms, by 59 % where it is beta, to a sixteenth where it is beta/8, as in fine meshes."},
   {.path = "large_strain", .field = member<&ColumnAnalysis::large_strain>, .value = "false", .kinds = of_waves,

@@ -118,7 +118,9 @@ void complete(const SceneDocument &document, ColumnScene &scene)
   if (scene.analysis.kind == AnalysisKind::dynamic && !scene.analysis.viscosity)
     {
       const auto is_elastic = [](const ColumnLayer &layer) { return layer.material == LayerMaterial::elastic; };
-      scene.analysis.viscosity = std::ranges::all_of(scene.layers, is_elastic) ? 0 : 1e-4;
+      const bool rings =
+          scene.analysis.scheme == TimeScheme::explicit_ && !std::ranges::all_of(scene.layers, is_elastic);
+      scene.analysis.viscosity = rings ? 1e-4 : 0;
     }
   if (!document.find("output.history_interval"))
     scene.output.history_interval =
@@ -216,8 +218,43 @@ void check_motions(const SceneDocument &document, const ColumnScene &scene)
     }
 }
 
+/// Implicit steps: what they need, and what they do not have.
+void check_scheme(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.analysis.kind != AnalysisKind::dynamic)
+    return;
+  const bool implicit = scene.analysis.scheme == TimeScheme::implicit;
+  if (!implicit && scene.analysis.spectral_radius != ColumnAnalysis().spectral_radius)
+    document.refuse("analysis.spectral_radius",
+                    "has no effect on explicit steps. Remove it, or give scheme = \"implicit\".");
+  if (!implicit)
+    return;
+  constexpr const char *key = "analysis.scheme";
+  if (!scene.analysis.time_step)
+    document.refuse(key,
+                    "is implicit, where accuracy alone decides the time step. Give analysis.time_step, a twentieth "
+                    "of the shortest period of interest.");
+  if (scene.analysis.safety != ColumnAnalysis().safety)
+    document.refuse("analysis.safety", "has no effect on implicit steps, all of which are stable. Remove it.");
+  if (*scene.analysis.viscosity > 0)
+    document.refuse("analysis.viscosity",
+                    "has no effect on implicit steps. Remove it; analysis.spectral_radius damps what is too fast.");
+  if (scene.water.drainage == Drainage::undrained)
+    document.refuse(key, "must be explicit if water.drainage is \"undrained\", where soil keeps its volume without a "
+                         "pressure. Give drainage = \"coupled\", if need be with a permeability of 0 m/s.");
+  if (scene.water.air == AirLaw::boyle)
+    document.refuse(key, "must be explicit if water.air is \"boyle\". Give air = \"constant\".");
+  if (scene.analysis.large_strain)
+    document.refuse(key, "must be explicit if analysis.large_strain is true. Remove one of them.");
+  if (scene.mesh.sides == Sides::free_field)
+    document.refuse(key, "must be explicit if mesh.sides is \"free-field\". Give sides = \"tied\" or \"walls\".");
+  if (scene.has_grains())
+    document.refuse(key, "must be explicit in soil of grains, whose own steps are what a run costs. Remove it.");
+}
+
 void check_analysis(const SceneDocument &document, const ColumnScene &scene)
 {
+  check_scheme(document, scene);
   if (scene.analysis.kind == AnalysisKind::plate || scene.analysis.kind == AnalysisKind::biaxial)
     check_newton(document, "analysis", scene.load_steps.newton);
   if (scene.analysis.kind != AnalysisKind::consolidation)
@@ -239,11 +276,12 @@ void check_analysis(const SceneDocument &document, const ColumnScene &scene)
 /// Options are those of the linear systems that the run has.
 void check_petsc(const SceneDocument &document, const ColumnScene &scene)
 {
-  const bool shaken = scene.analysis.kind == AnalysisKind::dynamic;
+  const bool shaken = scene.analysis.kind == AnalysisKind::dynamic,
+             implicit = shaken && scene.analysis.scheme == TimeScheme::implicit;
   std::vector<std::string_view> prefixes;
-  if (!shaken || scene.mesh.sides != Sides::tied)
+  if (!shaken || implicit || scene.mesh.sides != Sides::tied)
     prefixes.push_back("-statics_");
-  if (shaken && scene.water.drainage == Drainage::coupled)
+  if (shaken && !implicit && scene.water.drainage == Drainage::coupled)
     prefixes.push_back("-water_");
   std::istringstream words(scene.analysis.petsc);
   bool follows = false; // a value, which may be a negative number

@@ -41,7 +41,7 @@ void observe_step(Dynamics &run, const FiniteElementSpace &space, ColumnInstant 
   copy(run.acceleration(), instant.acceleration);
   if (instant.step > 0)
     for (std::size_t i = 0; i < instant.velocity.size(); ++i)
-      instant.velocity[i] = (instant.velocity[i] + run.velocity().local_element(i)) / 2;
+      instant.velocity[i] = run.velocity(static_cast<unsigned>(i));
   instant.energy = run.energy();
 }
 } // namespace isostat

@@ -204,12 +204,23 @@ enum class AnalysisKind
 /// Their words in scenes.
 inline constexpr const char *analysis_names[] = {"dynamic", "consolidation", "plate", "biaxial"};
 
+enum class TimeScheme
+{
+  explicit_,
+  implicit
+};
+
+/// Their words in scenes.
+inline constexpr const char *scheme_names[] = {"explicit", "implicit"};
+
 struct ColumnAnalysis
 {
   AnalysisKind kind = AnalysisKind::dynamic;
   double duration = 0;             ///< dynamic
   std::optional<double> time_step; ///< left out: `safety` of the stable one
   double safety = 0.8;
+  TimeScheme scheme = TimeScheme::explicit_;
+  double spectral_radius = 0.8;         ///< of implicit steps
   double mass_damping = 0;              ///< a_M, 1/s
   std::optional<double> viscosity;      ///< beta of SkeletonViscosity, s; 0: none; read_column_scene() sets it
   bool large_strain = false;            ///< DynamicsSettings::large_strain

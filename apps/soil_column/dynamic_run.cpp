@@ -15,6 +15,8 @@ DynamicsSettings settings_of(const ColumnRequest &request, const std::array<Moti
 {
   const ColumnScene &scene = request.scene;
   DynamicsSettings settings;
+  if (scene.analysis.scheme == TimeScheme::implicit)
+    settings.spectral_radius = scene.analysis.spectral_radius;
   settings.time_step = scene.analysis.time_step.value_or(0);
   if (!scene.has_grains()) // of which up to half as many steps again would be expensive
     settings.multiple = scene.output.history_interval;
@@ -68,9 +70,10 @@ private:
         if (ranks().first())
           progress_.say(fmt::format("{} packings, V_s {:.0f} to {:.0f} m/s", n_packings, range_[0], range_[1]));
       }
-    progress_.say(fmt::format("time step {:.5g} ms, stable up to {:.5g} ms; {} steps{}", 1e3 * run_.time_step(),
-                              1e3 * run_.stable_step(), last_step_ + 1,
-                              resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
+    progress_.say(fmt::format(
+        "{} time step {:.5g} ms, {} {:.5g} ms; {} steps{}", scheme_names[static_cast<int>(scene_.analysis.scheme)],
+        1e3 * run_.time_step(), is_implicit() ? "explicit ones would be stable up to" : "stable up to",
+        1e3 * run_.stable_step(), last_step_ + 1, resumed_ ? fmt::format(", from step {} on", run_.n_steps()) : ""));
   }
 
   /// Every n whole steps.
@@ -127,7 +130,8 @@ private:
     return fmt::format("step {} (t = {:.6g} s): ", step, static_cast<double>(step) * run_.time_step());
   }
 
-  bool has_long_steps() const override { return soil_.grains != nullptr; }
+  bool has_long_steps() const override { return soil_.grains || is_implicit(); }
+  bool is_implicit() const { return scene_.analysis.scheme == TimeScheme::implicit; }
 
   void add_to(ColumnCheckpoint &checkpoint) override
   {

@@ -3,12 +3,14 @@
 
 #include "base/error.hpp"
 #include "fem/solve/free_field.hpp"
+#include "fem/solve/statics.hpp"
 #include "fem/water/biot_integrals.hpp"
 #include "fem/water/pressure_system.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace isostat
 {
@@ -76,6 +78,8 @@ void Dynamics::check_settings() const
                      "oscillates. Set degree = 2.");
   if (!settings_.free_fields.empty() && (space_.dimension != 2 || settings_.large_strain))
     throw InputError("free fields: must be of a block in 2 dimensions with small strain");
+  if (settings_.spectral_radius)
+    check_implicit();
   if (!(settings_.safety > 0) || settings_.safety > 1)
     throw InputError(fmt::format("safety = {}; must be in (0, 1], of the stable step", settings_.safety));
   if (!(settings_.time_step >= 0))
@@ -87,8 +91,23 @@ void Dynamics::check_settings() const
     throw InputError(fmt::format("viscosity = {} s; must be >= 0", settings_.viscosity));
 }
 
+void Dynamics::check_implicit() const
+{
+  if (!(*settings_.spectral_radius >= 0) || *settings_.spectral_radius > 1)
+    throw InputError(fmt::format("spectral radius = {}; must be in [0, 1]", *settings_.spectral_radius));
+  if (!(settings_.time_step > 0))
+    throw InputError("implicit steps: the time step must be given, because accuracy alone decides it");
+  if (settings_.drainage == Drainage::undrained || settings_.large_strain || settings_.viscosity > 0 ||
+      !settings_.free_fields.empty())
+    throw InputError("implicit steps: must be of dry or coupled soil with small strain, without viscosity and free "
+                     "fields");
+}
+
 void Dynamics::choose_step()
 {
+  time_step_ = settings_.time_step;
+  if (settings_.spectral_radius)
+    return;
   double stable = stable_step();
   for (const auto &field : settings_.free_fields)
     stable = std::min(stable, field->column().stable_step());
@@ -111,11 +130,35 @@ void Dynamics::choose_step()
 void Dynamics::prepare_steps()
 {
   make_coefficients();
+  if (settings_.spectral_radius)
+    return begin_implicit();
   material_.set_time_step(time_step_);
   if (viscosity_)
     viscosity_->set_time_step(time_step_);
   if (settings_.drainage == Drainage::coupled)
     make_pressure_system();
+}
+
+void Dynamics::begin_implicit()
+{
+  StaticsSettings settings;
+  settings.pore_water = settings_.drainage == Drainage::coupled;
+  settings.newton = settings_.newton;
+  settings.largest_part = std::numeric_limits<double>::infinity();
+  settings.petsc = settings_.petsc;
+  const auto add_load = [this](double t, Vector &force) {
+    find_loads(t);
+    for (std::size_t i = 0; i < force.locally_owned_size(); ++i)
+      force.local_element(i) += mass_.local_element(i) * frame_[i % 3] + load_.local_element(i);
+  };
+  const auto base_acceleration = [this](double t) -> std::array<double, 3> {
+    if (settings_.base.compliant())
+      return {};
+    return {settings_.motion[0].acceleration(t), settings_.motion[1].acceleration(t),
+            settings_.motion[2].acceleration(t)};
+  };
+  settings.inertia = NodalInertia{*settings_.spectral_radius, mass_, damping_, add_load, base_acceleration};
+  implicit_ = std::make_unique<Statics>(space_, material_, settings);
 }
 
 /// Unknowns of cells below the water table, where an undrained column keeps its volume.
@@ -181,6 +224,8 @@ std::vector<double> Dynamics::point_pressure() const
 
 LinearEffort Dynamics::linear_effort() const
 {
+  if (implicit_)
+    return implicit_->linear_effort();
   return pressure_system_ ? pressure_system_->effort().after(earlier_effort_) : LinearEffort{};
 }
 
@@ -205,6 +250,8 @@ void Dynamics::for_each_field(Self &self, Visit &&visit)
   visit.constant("time_step", self.time_step_);
   visit.constant("viscosity", self.settings_.viscosity);
   visit.constant("viscous_above", self.settings_.viscous_above);
+  if (self.implicit_) // all else is in its state
+    return;
   visit("displacement", self.u_);
   visit("velocity", self.v_);
   visit("velocity_before", self.next_);
@@ -235,13 +282,28 @@ SolverState Dynamics::save() const
   for_each_field(*this, write);
   for (const auto &field : settings_.free_fields)
     write.state.parts.push_back(field->column().save());
+  if (implicit_)
+    write.state.parts.push_back(implicit_->save());
   return write.state;
+}
+
+void Dynamics::restore_implicit(const SolverState &state)
+{
+  if (state.parts.size() != 1)
+    throw InputError("checkpoint: it is not one of implicit steps; resume with the scene of the first run");
+  implicit_->restore(state.parts.front());
+  u_ = implicit_->displacement();
+  p_ = implicit_->pressure();
+  std::ranges::copy(implicit_->stresses(), stresses_.begin());
+  step_ = state.step;
 }
 
 void Dynamics::restore(const SolverState &state)
 {
   FieldReader reader(state, space_);
   for_each_field(*this, reader);
+  if (implicit_)
+    return restore_implicit(state);
   if (state.parts.size() != settings_.free_fields.size())
     throw InputError(fmt::format("checkpoint: free fields of {} sides, this run has {}; resume with the scene of the "
                                  "first run",

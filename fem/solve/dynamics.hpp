@@ -3,6 +3,8 @@
 #include "fem/linear/linear_effort.hpp"
 #include "fem/motion/base.hpp"
 #include "fem/motion/motion_input.hpp"
+#include "fem/solve/energy.hpp"
+#include "fem/solve/newton_settings.hpp"
 #include "fem/solve/skeleton_viscosity.hpp"
 #include "fem/solve/solver_state.hpp"
 #include "fem/space/discretisation.hpp"
@@ -14,6 +16,7 @@ namespace isostat
 {
 class FreeField;
 class PressureSystem;
+class Statics;
 struct PoreFluid;
 
 /// Load on the surface: traction (x, y, z) at a time, tension positive, Pa.
@@ -21,6 +24,9 @@ using SurfaceTraction = std::function<std::array<double, 3>(double time)>;
 
 struct DynamicsSettings
 {
+  /// rho_inf of implicit steps, in [0, 1] (see Dynamics); none: explicit ones
+  std::optional<double> spectral_radius = {};
+  NewtonSettings newton{.tolerance = 1e-6, .max_halvings = 8}; ///< of implicit steps
   double time_step = 0;      ///< s; 0: safety times the stable step at the start, or less: see `multiple`
   double multiple = 0;       ///< s; a step that is not given divides this interval if the interval is longer
   double safety = 0.8;       ///< of the stable step that may be used
@@ -29,22 +35,13 @@ struct DynamicsSettings
   double viscous_above = 25; ///< f_c, Hz
   bool large_strain = false; ///< updated Lagrangian: see Dynamics
   Drainage drainage = Drainage::dry;
-  std::string petsc = {}; ///< options of PETSc for the pressure's system, each beginning with -water_; empty: LU
+  /// Options of PETSc for the pressure's system, each beginning with -water_, or -statics_ of implicit steps; empty: LU
+  std::string petsc = {};
   bool lagged_compressibility = false; ///< undrained: volume strain -dp/Q of the step before, instead of none
   Base base = {};
   std::array<Motion, 3> motion = {};     ///< along x, y, z: of the base, or of the rock's outcrop if compliant
   SurfaceTraction surface_traction = {}; ///< none: free
   std::vector<std::shared_ptr<FreeField>> free_fields = {}; ///< of sides, in 2D; each of this run alone
-};
-
-/// Energy since the start, J (per m2 of a column).
-struct DynamicsEnergy
-{
-  double kinetic = 0;  ///< v(n-1/2) M v(n+1/2) / 2: with it the balance of central differences is exact
-  double internal = 0; ///< work of effective, viscous and pore stress on strains
-  double external = 0; ///< of inertia of the moving base, tractions, dashpot and mass damping
-
-  double residual() const { return kinetic + internal - external; }
 };
 
 /// Waves in a block of saturated soil: central differences in the displacement, effective stress explicit, pore
@@ -65,6 +62,10 @@ struct DynamicsEnergy
 /// to the cells at the start of the step. M stays, as mass does. Those of the water and the stable step are found again
 /// when a displacement gradient since the last time exceeds 0.2 %. It is the material that turns its stress with the
 /// soil: packings do, formulas do not. tested: tests/fem/solve/dynamics_geometry_test.cpp
+///
+/// With a spectral radius steps are implicit, of any size: Statics with inertia, (13a) to (13c), the same unknowns,
+/// loads and instants of what is reported. Small strain, no viscosity, dry or coupled, without free fields.
+/// tested: tests/verification/implicit_dynamics_test.cpp
 ///
 /// Displacements count from a rigid base, or are absolute above a compliant one (Lysmer & Kuhlemeyer 1969,
 /// doi:10.1061/JMCEA3.0001144). Undrained, soil below the water table keeps its volume (u_z = 0), soil above it is
@@ -87,7 +88,7 @@ public:
   std::uint64_t n_steps() const { return step_; }
   double time() const { return static_cast<double>(step_) * time_step_; }
   double time_step() const { return time_step_; }
-  double stable_step() const; ///< of the present stiffness, s
+  double stable_step() const; ///< explicit, of the present stiffness, s
 
   const Vector &displacement() const { return u_; } ///< at time()
   const Vector &velocity() const { return v_; }     ///< at time() - dt/2
@@ -108,7 +109,7 @@ public:
   std::vector<double> point_pressure() const;
   /// Sum over all ranks.
   DynamicsEnergy energy() const;
-  LinearEffort linear_effort() const; ///< of an iterative solver of the pressure, since the start or restore()
+  LinearEffort linear_effort() const; ///< of an iterative linear solver, since the start or restore()
   const DynamicsSettings &settings() const { return settings_; }
 
   /// Bit for bit; on another number of ranks that share out the mesh, to round-off of their sums. Collective.
@@ -120,14 +121,19 @@ public:
 private:
   // dynamics.cpp
   void check_settings() const;
+  void check_implicit() const;
   void choose_step();
   void prepare_steps();
+  void begin_implicit();
+  void restore_implicit(const SolverState &state);
   void make_coefficients();
   std::vector<bool> wet_unknowns() const;
   template <typename Self, typename Visit>
   static void for_each_field(Self &self, Visit &&visit);
   // dynamics_step.cpp
-  void find_loads();
+  void find_loads(double time);
+  void find_forces();
+  void step_implicitly();
   void start();
   void find_pressure();
   template <bool coupled>
@@ -178,7 +184,8 @@ private:
   std::vector<Stress> initial_stresses_;
   std::vector<PoreFluid> lagged_fluids_; ///< of the points, lagged compressibility only
   std::unique_ptr<PressureSystem> pressure_system_;
-  LinearEffort earlier_effort_; ///< of pressure systems before this one
+  std::unique_ptr<Statics> implicit_; ///< null: explicit
+  LinearEffort earlier_effort_;       ///< of pressure systems before this one
 
   // of one step
   std::array<double, 3> frame_ = {}; ///< minus the acceleration of a rigid base

@@ -4,9 +4,11 @@
 
 #include "base/error.hpp"
 #include "fem/solve/free_field.hpp"
+#include "fem/solve/statics.hpp"
 #include "fem/water/biot_integrals.hpp"
 #include "fem/water/pressure_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -19,10 +21,9 @@ std::span<const Stress> Dynamics::skeleton_stresses()
   return viscosity_ ? total_ : stresses_;
 }
 
-/// load_: what comes from the dashpot, free fields and the surface. frame_: inertia of a moving base. force_: F - F0.
-void Dynamics::find_loads()
+/// load_: what comes from the dashpot, free fields and the surface. frame_: inertia of a moving base.
+void Dynamics::find_loads(double t)
 {
-  const double t = time();
   const Base &base = settings_.base;
   frame_ = {}; // -a_base of a rigid base: M frame_ is its inertia in (4)
   for (int axis = 0; axis < 3; ++axis)
@@ -41,6 +42,10 @@ void Dynamics::find_loads()
     }
   for (const auto &field : settings_.free_fields)
     field->step(load_);
+}
+
+void Dynamics::find_forces()
+{
   force_ = 0; // F(sigma') - F(sigma'_0) of (4), (7)
   space_.add_internal_force(cells(), skeleton_stresses(), force_);
   // the difference of two whole sums: zero bit for bit as long as the stresses are those of the start
@@ -196,9 +201,32 @@ void Dynamics::strain_points()
     follow_deformation();
 }
 
+/// Velocities are put half a step before and after time(), from which the mean and the difference are those of time().
+void Dynamics::step_implicitly()
+{
+  const NodalMotion &now = implicit_->motion();
+  for (std::size_t i = 0; i < v_.locally_owned_size(); ++i)
+    {
+      const double v = now.velocity.local_element(i), // update_ is 0 where a component is held
+          a = update_.local_element(i) > 0 ? now.imbalance.local_element(i) / mass_.local_element(i) : 0,
+                   half = time_step_ / 2 * a;
+      v_.local_element(i) = v + half;
+      next_.local_element(i) = v - half;
+    }
+  p_ = implicit_->pressure();
+  energy_ = now.energy;
+  implicit_->step(time_step_);
+  u_ = implicit_->displacement();
+  std::ranges::copy(implicit_->stresses(), stresses_.begin());
+  ++step_;
+}
+
 void Dynamics::step()
 {
-  find_loads();
+  if (implicit_)
+    return step_implicitly();
+  find_loads(time());
+  find_forces();
   if (step_ == 0)
     start();
   if (!permeable_strains_.empty())

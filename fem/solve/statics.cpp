@@ -49,10 +49,25 @@ Statics::Statics(const FiniteElementSpace &space, Material &material, StaticsSet
     : problem_(std::make_unique<StaticsProblem>(space, material, std::move(settings))),
       state_(space, material, problem_->settings.min_force)
 {
+  if (problem_->settings.inertia)
+    begin_motion();
   problem_->begin_system(state_.pressure_scale);
 }
 
 Statics::~Statics() = default;
+
+/// M a = f, from rest.
+void Statics::begin_motion()
+{
+  const Vector none = problem_->space.displacement_vector();
+  NodalMotion &motion = state_.motion.emplace(NodalMotion{none, none, none, none});
+  Loading loading{none, none};
+  problem_->loads.find(0, state_.reference_force, loading);
+  state_.load = motion.imbalance = loading.force;
+  for (unsigned i : problem_->loads.held(true).free_u)
+    if (const double mass = problem_->settings.inertia->mass.local_element(i); mass > 0)
+      motion.acceleration.local_element(i) = state_.load.local_element(i) / mass;
+}
 
 void Statics::step(double duration)
 {

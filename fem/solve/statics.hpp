@@ -31,6 +31,8 @@ struct StaticsProblem; // fem/solve/statics/substep.hpp
 /// forces by modulus over cell size. Force scale: the largest so far of |f|, |F - F0|, |G^T p| (held unknowns, that is
 /// reactions, included), min_force and 1e-4 |F0|.
 ///
+/// With inertia a step is one of a motion that begins at rest: generalised alpha (13a), (13b) in place of (14).
+///
 /// Without pore water degree 1 or 2, with it degree 2. Displacements count from the start, which is taken as in
 /// equilibrium without excess pressure.   tested: tests/fem/solve/statics_test.cpp, consolidation_test.cpp,
 /// mandel_test.cpp, statics_state_test.cpp, statics_failure_test.cpp, statics_ranks_test.cpp,
@@ -65,6 +67,8 @@ public:
   /// Force of the support on the soil since the start: sum of F - F0 - G^T p - f over a face's unknowns of a component,
   /// over all ranks; + along the axis. An unknown that two faces hold counts on both. N (1 m along axes not meshed)
   double reaction(FaceComponent of) const;
+  /// With inertia.
+  const NodalMotion &motion() const { return *state_.motion; }
   const StaticsEffort &effort() const { return report_.effort; }
   LinearEffort linear_effort() const;                  ///< of iterative linear solvers, since the start or restore()
   double residual() const { return report_.residual; } ///< of the last trial, in units of the force scale
@@ -77,6 +81,7 @@ public:
   void restore(const SolverState &state);
 
 private:
+  void begin_motion();
   double next_part(double left) const;
   void advance(double duration, bool flow);
   [[noreturn]] void fail(double size) const;

@@ -129,4 +129,16 @@ void BiotOperator::add_water_volume(const Vector &u, const Vector &p, const Vect
     }
   r.add_ghosts_to_owners();
 }
+
+void BiotOperator::add_inertia_of_water(const Vector &v, Vector &r) const
+{
+  const WithGhosts ghosts(v);
+  const std::size_t n_u = 3 * space_.n_nodes, n_i = space_.pressure_nodes_per_cell();
+  Vector sum = space_.pressure_vector();
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+    scatter_add(cells_[cell].l * gathered(v, &space_.cell_dofs[cell * n_u], n_u), &space_.cell_pressures[cell * n_i],
+                sum);
+  sum.add_ghosts_to_owners();
+  r += sum;
+}
 } // namespace isostat

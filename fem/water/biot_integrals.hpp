@@ -43,6 +43,8 @@ public:
   void add_pore_force(const Vector &p, Vector &f) const;
   /// r += G u + S p + theta H p_now, m3.
   void add_water_volume(const Vector &u, const Vector &p, const Vector &p_now, double theta, Vector &r) const;
+  /// r += L v, m3.
+  void add_inertia_of_water(const Vector &v, Vector &r) const;
 
 private:
   void integrate(const PorousPoints &points);

@@ -82,6 +82,8 @@ void StaticsLoads::find(double time, const Vector &reference_force, Loading &loa
   if (settings_.settles)
     for (std::size_t i = 0; i < load.locally_owned_size(); ++i)
       load.local_element(i) -= std::clamp(time, 0.0, 1.0) * reference_force.local_element(i);
+  if (settings_.inertia)
+    settings_.inertia->add_load(time, load);
   for (std::size_t k = 0; k < given_.size(); ++k)
     for (unsigned i : given_[k])
       loading.displacement.local_element(i) = settings_.displacements[k].displacement(time, places_[i]);

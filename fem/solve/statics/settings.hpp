@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "fem/solve/newton_settings.hpp"
+#include "fem/solve/statics/inertia.hpp"
 #include "fem/space/discretisation.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace isostat
@@ -35,6 +37,7 @@ struct StaticsSettings
   /// What holds the stresses of the start goes off from t = 0 to 1: then they alone balance all loads, which are the
   /// whole ones and not changes.
   bool settles = false;
+  std::optional<NodalInertia> inertia = {}; ///< none: equilibria, for which time is what loads and water depend on
   NewtonSettings newton = {};
   /// Of the time since water began to flow, the longest part that a sub-step takes; of the first step, that of its
   /// first one. Infinite: whole steps.

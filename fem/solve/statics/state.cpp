@@ -36,6 +36,15 @@ void for_each_field(State &state, Visit &&visit)
   visit("force_scale", state.scale);
   visit("min_force_scale", state.min_scale);
   visit("pressure_scale", state.pressure_scale);
+  if (!state.motion)
+    return;
+  visit("velocity", state.motion->velocity);
+  visit("velocity_increment", state.motion->velocity_increment);
+  visit("acceleration", state.motion->acceleration);
+  visit("imbalance", state.motion->imbalance);
+  visit.sum("kinetic", state.motion->energy.kinetic);
+  visit.sum("internal", state.motion->energy.internal);
+  visit.sum("external", state.motion->energy.external);
 }
 } // namespace
 

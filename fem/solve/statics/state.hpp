@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "fem/solve/solver_state.hpp"
+#include "fem/solve/statics/inertia.hpp"
 #include "fem/solve/statics/mixed_vector.hpp"
+
+#include <optional>
 
 namespace isostat
 {
@@ -26,6 +29,7 @@ struct StaticsState
   MixedVector last_increment; ///< of the last sub-step
   Vector load;                ///< N
   std::vector<Stress> stresses;
+  std::optional<NodalMotion> motion; ///< none without inertia
 
   Vector reference_force;    ///< F0, N
   double min_scale = 0;      ///< N

@@ -17,14 +17,33 @@ StaticsProblem::StaticsProblem(const FiniteElementSpace &its_space, Material &it
 
 void StaticsProblem::begin_system(double pressure_scale)
 {
-  system = std::make_unique<StaticsSystem>(space, water.get(), pressure_scale, settings.petsc);
+  system =
+      std::make_unique<StaticsSystem>(space, water.get(), pressure_scale, settings.petsc, settings.inertia.has_value());
+  inertia_of = 0;
+}
+
+/// (13b), in the system of steps of this length.
+void StaticsProblem::set_inertia(double duration)
+{
+  if (duration == inertia_of)
+    return;
+  const NodalInertia &inertia = *settings.inertia;
+  const GeneralisedAlpha alpha(inertia.spectral_radius);
+  const double velocity = alpha.gamma / (alpha.beta * duration), // per displacement
+      of_mass = (1 - alpha.m) / ((1 - alpha.f) * alpha.beta * duration * duration);
+  Vector diagonal = inertia.mass;
+  for (std::size_t i = 0; i < diagonal.locally_owned_size(); ++i)
+    diagonal.local_element(i) = of_mass * diagonal.local_element(i) + velocity * inertia.damping.local_element(i);
+  system->set_inertia(diagonal, velocity);
+  material.set_time_step(duration);
+  inertia_of = duration;
 }
 
 StaticsSubstep::StaticsSubstep(StaticsProblem &problem, const StaticsState &from, const Loading &end, double duration,
                                bool flow, StaticsReport &report)
     : increment(problem.space), step(increment), report(report), problem_(problem), from_(from), end_(end),
-      held_(problem.loads.held(flow)), duration_(flow ? duration : 0), residual_(increment), moved_(increment),
-      gradients_(problem.space.n_points(), Gradient{})
+      held_(problem.loads.held(flow)), duration_(duration), flows_for_(flow ? duration : 0), residual_(increment),
+      moved_(increment), gradients_(problem.space.n_points(), Gradient{}), motion_(from.motion)
 {
   // (15): theta and c of BDF2 with the ratio of this step to the one before, of backward Euler without one
   const double ratio = from.duration_before > 0 ? duration / from.duration_before : 0;
@@ -33,6 +52,8 @@ StaticsSubstep::StaticsSubstep(StaticsProblem &problem, const StaticsState &from
   last_part_ = second_order ? ratio * ratio / (1 + 2 * ratio) : 0;
   if (problem.water && problem.space.mesh().soil.permeability_varies())
     follow_void_ratio(second_order ? ratio : 0);
+  if (motion_)
+    problem.set_inertia(duration);
   restart();
 }
 
@@ -145,6 +166,53 @@ void StaticsSubstep::find_residual()
     }
   for (std::size_t i = 0; i < force.locally_owned_size(); ++i)
     residual_.u.local_element(i) = end_.force.local_element(i) - force.local_element(i) + pore_force.local_element(i);
+  if (motion_)
+    add_inertia();
+}
+
+/// (13b), over 1 - alpha_f, and what (13c) adds to (15).
+void StaticsSubstep::add_inertia()
+{
+  const NodalInertia &inertia = *problem_.settings.inertia;
+  const GeneralisedAlpha alpha(inertia.spectral_radius);
+  const NodalMotion &from = *from_.motion;
+  alpha.move(increment.u, duration_, from, *motion_);
+  for (std::size_t i = 0; i < increment.u.locally_owned_size(); ++i)
+    {
+      double &r = residual_.u.local_element(i);
+      r -= inertia.damping.local_element(i) * motion_->velocity.local_element(i);
+      motion_->imbalance.local_element(i) = r;
+      const double a =
+          (1 - alpha.m) * motion_->acceleration.local_element(i) + alpha.m * from.acceleration.local_element(i);
+      r += (alpha.f * from.imbalance.local_element(i) - inertia.mass.local_element(i) * a) / (1 - alpha.f);
+    }
+  if (!problem_.water)
+    return;
+  const std::array<double, 3> base = inertia.base_acceleration(from_.time + duration_);
+  Vector change = motion_->velocity_increment;
+  for (std::size_t i = 0; i < change.locally_owned_size(); ++i)
+    change.local_element(i) += theta_ * base[i % 3] - last_part_ * from.velocity_increment.local_element(i);
+  problem_.water->add_inertia_of_water(change, residual_.p);
+}
+
+/// Work by trapezoids of the sub-step.   @param state  from_
+void StaticsSubstep::gain_energy(StaticsState &state) const
+{
+  const NodalInertia &inertia = *problem_.settings.inertia;
+  const NodalMotion &from = *state.motion;
+  double kinetic = 0, outer = 0, whole = 0;
+  for (unsigned i : held_.free_u)
+    {
+      const double du = increment.u.local_element(i), v = motion_->velocity.local_element(i),
+                   v_mean = (from.velocity.local_element(i) + v) / 2;
+      kinetic += inertia.mass.local_element(i) * v * v / 2;
+      outer += du * ((state.load.local_element(i) + end_.force.local_element(i)) / 2 -
+                     inertia.damping.local_element(i) * v_mean);
+      whole += du * (from.imbalance.local_element(i) + motion_->imbalance.local_element(i)) / 2;
+    }
+  const DynamicsEnergy before = from.energy;
+  state.motion = motion_;
+  state.motion->energy = {kinetic, before.internal + outer - whole, before.external + outer};
 }
 
 double StaticsSubstep::merit(double moved_part) const
@@ -178,6 +246,8 @@ void StaticsSubstep::accept(StaticsState &state) const
 {
   if (tried_)
     problem_.material.commit();
+  if (motion_)
+    gain_energy(state);
   state.stresses = stresses_;
   state.now += increment;
   for (unsigned i : held_.u)
@@ -186,7 +256,7 @@ void StaticsSubstep::accept(StaticsState &state) const
     state.now.p.local_element(i) = 0;
   state.last_increment = increment;
   state.load = end_.force;
-  state.duration_before = duration_;
+  state.duration_before = flows_for_;
   state.scale = report.scale;
   ++report.effort.substeps;
 }

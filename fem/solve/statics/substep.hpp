@@ -13,8 +13,9 @@ struct StaticsProblem
 {
   /// @throws InputError  settings, see checked()
   StaticsProblem(const FiniteElementSpace &space, Material &material, StaticsSettings settings);
-  /// Begins the linear system, as yet without a factor.   @param pressure_scale  Pa
+  /// Begins the linear system, as yet without a factor and inertia.   @param pressure_scale  Pa
   void begin_system(double pressure_scale);
+  void set_inertia(double duration); ///< of a sub-step, s; that of the material, too
 
   const FiniteElementSpace &space;
   Material &material;
@@ -22,6 +23,7 @@ struct StaticsProblem
   const StaticsLoads loads;
   const std::unique_ptr<BiotOperator> water; ///< null: no pore water
   std::unique_ptr<StaticsSystem> system;
+  double inertia_of = 0; ///< duration of the sub-step that the system has the inertia of, s
 };
 
 /// A sub-step that approaches equilibrium: an increment from a state to the loads at its end, and the residual of (14)
@@ -60,18 +62,21 @@ public:
 private:
   void follow_void_ratio(double ratio);
   void find_residual();
+  void add_inertia();
+  void gain_energy(StaticsState &state) const;
 
   StaticsProblem &problem_;
   const StaticsState &from_;
   const Loading &end_;
   const HeldUnknowns &held_;
-  const double duration_; ///< of flow, s; 0: none
-  double theta_ = 0;      ///< of (15): duration over the leading coefficient of BDF, s; 0: no flow
-  double last_part_ = 0;  ///< c of (15): of the increment before, that BDF counts
+  const double duration_, flows_for_; ///< s; of flow 0: none
+  double theta_ = 0;                  ///< of (15): duration over the leading coefficient of BDF, s; 0: no flow
+  double last_part_ = 0;              ///< c of (15): of the increment before, that BDF counts
   MixedVector residual_;
   MixedVector moved_; ///< that the residual loses by the step of held unknowns
   std::vector<Stress> stresses_;
   std::vector<Gradient> gradients_;
-  bool tried_ = false; ///< the material has been asked
+  std::optional<NodalMotion> motion_; ///< at the end
+  bool tried_ = false;                ///< the material has been asked
 };
 } // namespace isostat

@@ -24,8 +24,9 @@ class StaticsSystem
 {
 public:
   /// @param water  null: no pore water; must outlive this   @param pressure_scale  Pa, about the skeleton's modulus
+  /// @param moves   there will be inertia: the LU of a column is PETSc's own
   StaticsSystem(const FiniteElementSpace &space, const BiotOperator *water, double pressure_scale,
-                const std::string &options = {});
+                const std::string &options = {}, bool moves = false);
   ~StaticsSystem();
 
   /// Owned unknowns that are held from now on; others that no cell has are so anyway.
@@ -33,6 +34,8 @@ public:
   /// @throws RunFailure  the tangent is singular: a body that moves freely, or a soil without stiffness
   void set_tangent(std::span<const Stiffness> tangents, double theta);
   void forget_tangent(); ///< the water has changed
+  /// (13b): adds to the diagonal of K, N/m; L counts a velocity of so much per displacement, 1/s.
+  void set_inertia(const Vector &diagonal, double velocity);
 
   /// Increments of a residual (N; m3), and of the increments that `step` has at held unknowns when called.
   /// @param moved  what the residual loses by the held increments alone

@@ -223,6 +223,21 @@ TEST(ColumnSceneError, AnalysisAndLoad)
   expect_refused(smallest, {"must be key=value. Give for example --set analysis.safety=0.5"}, {"safety"});
 }
 
+TEST(ColumnSceneError, ImplicitSteps)
+{
+  const std::string scene = smallest + "scheme = \"implicit\"\ntime_step = \"5 ms\"\n";
+  EXPECT_EQ(complaint(scene, {"analysis.spectral_radius=1"}), "accepted");
+  EXPECT_EQ(complaint(scene, {"analysis.petsc=-statics_ksp_type gmres -statics_pc_type ilu"}), "accepted");
+  expect_refused(smallest + "scheme = \"implicit\"\n", {"column.toml:10: analysis.scheme", "Give analysis.time_step"});
+  expect_refused(smallest, {"analysis.spectral_radius", "has no effect on explicit"}, {"analysis.spectral_radius=1"});
+  expect_refused(scene, {"analysis.spectral_radius = 1.1; must be in [0, 1]"}, {"analysis.spectral_radius=1.1"});
+  expect_refused(scene, {"analysis.safety", "has no effect on implicit"}, {"analysis.safety=0.5"});
+  expect_refused(scene, {"analysis.viscosity", "has no effect on implicit"}, {"analysis.viscosity=0.1 ms"});
+  expect_refused(scene, {"analysis.scheme", "drainage is \"undrained\""}, {"water.drainage=undrained"});
+  expect_refused(scene, {"analysis.scheme", "large_strain"}, {"analysis.large_strain=true"});
+  expect_refused(scene, {"analysis.petsc", "begin with -statics_"}, {"analysis.petsc=-water_ksp_type gmres"});
+}
+
 TEST(ColumnSceneError, OptionsOfLinearSolvers)
 {
   const Overrides options = {"analysis.petsc=-statics_ksp_type cg -statics_ksp_rtol 1e-8 -water_ksp_type gmres"};

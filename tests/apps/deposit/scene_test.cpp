@@ -310,6 +310,7 @@ TEST(ColumnScene, RoundTripBitForBit)
         scene.water.atmospheric_pressure = 1e5 / 3;
         if (scene.base.kind == BaseKind::rigid)
           scene.base = {};
+        scene.analysis.spectral_radius = ColumnAnalysis().spectral_radius;
         if (scene.analysis.kind == AnalysisKind::consolidation)
           {
             const ColumnAnalysis none;
