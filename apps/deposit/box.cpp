@@ -192,9 +192,6 @@ void check_refinement(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("refine", "needs mesh.dimension 2 or 3; elements of a column are those of its layers. Give cells.");
   if (scene.analysis.kind == AnalysisKind::biaxial)
     document.refuse("refine", "has no place in a biaxial block, whose elements are alike. Remove it.");
-  if (dimension == 3 && !scene.load.bears_on_all())
-    document.refuse("refine", "needs a surcharge on all of the surface in 3 dimensions. Remove load.surcharge_from and "
-                              "surcharge_to.");
   for (std::size_t k = 0; k < scene.refine.size(); ++k)
     {
       const auto &[from, to, levels] = scene.refine[k];

@@ -28,11 +28,7 @@ TEST(BoxScene, KeysComeThroughTextAndGoToTheMesh)
   EXPECT_EQ(mesh.ground.at(7), 3.5);
   EXPECT_EQ(mesh.line[0], 5); // the middle
   EXPECT_EQ(mesh.ground_at({5, 0, 0}), 4.5);
-  EXPECT_EQ(scene.load.surcharge_at(3.9), 0);
   EXPECT_FALSE(scene.load.bears_on_all());
-  EXPECT_EQ(scene.load.surcharge_at(4), 1e4);
-  EXPECT_EQ(scene.load.surcharge_at(5), 2e4);
-  EXPECT_EQ(scene.load.surcharge_at(6.1), 0);
 }
 
 TEST(BoxScene, RefinementsComeThroughTextAndGoToTheMesh)
@@ -62,9 +58,6 @@ TEST(BoxScene, WithoutWallsAllIsAsItWas)
   EXPECT_EQ(scene.mesh.sides, Sides::tied);
   EXPECT_TRUE(mesh_spec(scene).ground.is_level());
   EXPECT_EQ(mesh_spec(scene).line[0], 0);
-  ColumnLoad load;
-  load.surcharge = 3;
-  EXPECT_EQ(load.surcharge_at(123), 3);
 }
 
 const std::string plate = "[water]\ndrainage = \"dry\"\n[analysis]\nkind = \"plate\"\ndisplacement = \"-0.2 m\"\n";
