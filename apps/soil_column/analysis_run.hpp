@@ -18,13 +18,6 @@
 
 namespace isostat
 {
-/// These settings, with which a signal ends a step of packings, which takes minutes.
-inline StaticsSettings interruptible(StaticsSettings settings)
-{
-  settings.gives_up = [] { return on_any_rank(stop_requested()); };
-  return settings;
-}
-
 /// The life of a run, from its start, or from a checkpoint, to its end: folder, provenance, checkpoints, signals,
 /// failures, progress, costs. What its steps are, and what they leave, is a matter of the analysis.
 /// @tparam Solver  Dynamics or Statics
@@ -70,7 +63,7 @@ public:
       {
         fail(failure, at);
       }
-    Summary summary = report();
+    Summary summary = summarised();
     add_linear(summary, "linear solver", "linear", run_.linear_effort());
     add_linear(summary, "of settling", "settling_linear", settled_.linear);
     return {std::move(summary), times(), failure_};
@@ -159,6 +152,19 @@ protected:
   RunTimes times_;
 
 private:
+  /// A signal ends equilibria that only the summary needs, too.
+  Summary summarised()
+  {
+    try
+      {
+        return report();
+      }
+    catch (const StepGivenUp &)
+      {
+        stop();
+      }
+  }
+
   /// A resumed run settles, too: the time step is that of the stiffness then.
   Settled settled()
   {
@@ -168,8 +174,6 @@ private:
     return settle(scene_, space_.mesh(), *soil_.material, [&](const std::string &line) {
       if (scene_.has_grains() || !scene_.analysis.petsc.empty()) // else formulas settle at once
         progress.say(line);
-      if (on_any_rank(stop_requested()))
-        throw Interrupted("interrupted while the soil settles, before the first step; start it again");
     });
   }
 

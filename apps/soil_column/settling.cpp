@@ -4,7 +4,6 @@
 #include "apps/deposit/deposit_space.hpp"
 #include "base/error.hpp"
 #include "fem/solve/dynamics.hpp"
-#include "fem/solve/statics.hpp"
 
 #include <fmt/format.h>
 
@@ -73,7 +72,7 @@ Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &materia
         {Face::surface, scene.load.surcharge_from.value_or(0), scene.load.surcharge_to.value_or(scene.mesh.width)});
   const std::unique_ptr<const FiniteElementSpace> its_space = discretised(scene, cut, box_supports(scene));
   const FiniteElementSpace &space = *its_space;
-  Statics statics(space, material, settings_of(scene, soil));
+  Statics statics(space, material, interruptible(settings_of(scene, soil)));
   try
     {
       for (unsigned k = 1; k <= steps; ++k)
@@ -84,6 +83,10 @@ Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &materia
                                    statics.effort().trials, statics.effort().convergence(),
                                    statics.linear_effort().text()));
         }
+    }
+  catch (const StepGivenUp &)
+    {
+      throw Interrupted("interrupted while the soil settles, before the first step; start it again");
     }
   catch (const RunFailure &failure)
     {
