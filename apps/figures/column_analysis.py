@@ -55,8 +55,7 @@ def response_spectrum(a, dt, periods, damping=0.05, pseudo=False):
 
 
 def is_cut_off(a):
-    """Whether a motion still goes on when its record ends: the Fourier integral of the record is not that of the
-    motion."""
+    """Whether a record ends before its motion: its Fourier integral is not that of the motion."""
     return np.abs(a[-max(1, len(a) // 20):]).max() > 0.2 * np.abs(a).max()
 
 

@@ -165,9 +165,26 @@ private:
       }
   }
 
+  /// The size of what may be large; LU in 3D needs numbers and operations as n^(4/3) and n^2 (George 1973).
+  void announce() const
+  {
+    constexpr double many = 4e4; // 2 GB, two minutes
+    const double n = space_.displacement_vector().size() + space_.pressure_vector().size();
+    const bool has_statics = std::is_same_v<Solver, Statics> || scene_.mesh.sides != Sides::tied;
+    if (!ranks().first() || (space_.dimension < 3 && scene_.refine.empty()))
+      return;
+    Progress(request_.quiet).say(fmt::format("{} unknowns", n));
+    if (space_.dimension == 3 && has_statics && n > many &&
+        scene_.analysis.petsc.find("-statics_pc_type") == std::string::npos)
+      warn(fmt::format("LU of {} unknowns in 3D takes gigabytes and minutes for each tangent. Iterate: --petsc "
+                       "\"-statics_pc_type {}\" (docs/column.md)",
+                       n, scene_.analysis.kind == AnalysisKind::consolidation ? "fieldsplit" : "gamg"));
+  }
+
   /// A resumed run settles, too: the time step is that of the stiffness then.
   Settled settled()
   {
+    announce();
     if (scene_.mesh.sides == Sides::tied)
       return {};
     const Progress progress(request_.quiet);

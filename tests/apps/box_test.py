@@ -132,9 +132,14 @@ class Box(ColumnTest):
         short = settings(analysis__duration="0.3 s")
         refine = '[[refine]]\nfrom = ["3.5 m", "0.9 m"]\nto = ["8.5 m", "4 m"]\nlevels = 2\n'
         self.scene = self.write("refined.toml", BOX + refine)
-        self.assert_done(self.run_column(self.scene, "-o", "run", *short))
+        done = self.run_column(self.scene, "-o", "run", *short)
+        self.assert_done(done)
         maps = self.maps("run")
         self.assertEqual(len(maps["corner_x"]), 4 * 102)
+        self.assertRegex(done.stderr, r"\d+ unknowns\n")
+        text = (self.folder / "run/summary.txt").read_text(encoding="utf-8")
+        waves = re.search(r"waves carried +sand: elements of (\S+) m", text)
+        self.assertEqual(float(waves[1]), 2)  # of the 12 m in 6, that are not halved
         places = np.round(np.stack([maps["corner_x"], maps["corner_z"]]), 9)
         u = maps["displacement_x"][-1]
         self.assertGreater(np.abs(u).max(), 1e-4)

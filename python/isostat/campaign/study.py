@@ -251,7 +251,7 @@ def listing() -> str:
     for path in sorted(folder.glob("*/__init__.py")):
         name = path.parent.name
         rows.append(f"  {name:<20}{stamps.get(name, {}).get('minutes', '-'):>11}  {title_of(path)}")
-    return "\n".join(rows) + "\nMinutes were measured, on one core, for the page; --dry-run estimates what is left."
+    return "\n".join(rows) + "\nMinutes were measured, on one core, for the page; --dry-run estimates what remains."
 
 
 def load(name: str) -> Any:
