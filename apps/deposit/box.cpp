@@ -4,9 +4,12 @@
 #include "base/error.hpp"
 #include "base/scene/ranges.hpp"
 #include "base/scene/reader.hpp"
+#include "base/tell.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace isostat
 {
@@ -49,7 +52,8 @@ constexpr Key in_refine[] = {
   {.path = "to", .field = member<&ColumnRefinement::to>, .unit = unit::m, .presence = Presence::optional,
    .value = "[\"8 m\", \"10 m\"]", .text = "Where it ends, likewise; above `from`."},
   {.path = "levels", .field = member<&ColumnRefinement::levels>, .value = "1", .range = {1, 8},
-   .reason = "because elements of a 256th are small enough",
+   .reason = "because a level makes 4 (in 3 dimensions 8) elements of one, and 8 levels a 256th of its length; give "
+             "the layers more cells for more",
    .text = "How often elements whose centre is in the box are halved. Neighbours are halved, too, until elements that "
            "meet at a corner differ by one level."},
 };
@@ -128,7 +132,9 @@ void refuse_around_box(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("analysis.large_strain", "must be false if mesh.sides is \"free-field\", whose tractions are those "
                                              "of small strain.");
   if (scene.analysis.kind == AnalysisKind::consolidation)
-    document.refuse("analysis.kind", "must not be \"consolidation\" in a box; shake it, or move a plate.");
+    document.refuse("analysis.kind",
+                    "must not be \"consolidation\" in a box. Leave mesh.sides out (tied sides, as in ground without "
+                    "end, with the load on all of it), or give kind = \"dynamic\" or \"plate\".");
   if (scene.slope.tangent > 0)
     document.refuse("slope.angle",
                     "turns the axes of an infinite slope; a box is upright. Give the inclined surface by "
@@ -183,6 +189,59 @@ void check_free_fields(const SceneDocument &document, const ColumnScene &scene)
       }
 }
 
+/// Whether a box reaches the elements at the lower and at the upper end of an axis across, by their centres.
+std::array<bool, 2> reaches_sides(const ColumnScene &scene, const ColumnRefinement &box, unsigned axis)
+{
+  const double half = scene.mesh.width / scene.mesh.cells_across / 2;
+  return {box.from.empty() || box.from[axis] < half, box.to.empty() || box.to[axis] > scene.mesh.width - half};
+}
+
+/// Elements at sides that are tied are alike; where several boxes reach them the mesh itself is asked.
+void check_tied_boxes(const SceneDocument &document, const ColumnScene &scene)
+{
+  if (scene.mesh.sides != Sides::tied || scene.mesh.given)
+    return;
+  for (unsigned axis = 0; axis + 1 < scene.mesh.dimension; ++axis)
+    for (const std::size_t side : {0, 1})
+      {
+        const auto reaches = [&](std::size_t end) {
+          return std::ranges::find_if(
+              scene.refine, [&](const ColumnRefinement &box) { return reaches_sides(scene, box, axis)[end]; });
+        };
+        if (const auto box = reaches(side); box != scene.refine.end() && reaches(1 - side) == scene.refine.end())
+          document.refuse(fmt::format("refine.{}.{}", box - scene.refine.begin(), side == 0 ? "to" : "from"),
+                          fmt::format("leaves elements at one side of two that are tied. Let both ends of the box "
+                                      "reach a side, 0 m and {} m, or none, or give mesh.sides = \"walls\".",
+                                      number_text(scene.mesh.width)));
+      }
+}
+
+/// What a box covers of a block whose end it goes beyond, and the elements in it if they are many.
+void note_box(const SceneDocument &document, const ColumnScene &scene, std::size_t k)
+{
+  const auto &[from, to, levels] = scene.refine[k];
+  bool is_outside = false;
+  std::vector<std::string> covered;
+  double elements = 1;
+  for (unsigned d = 0; d < scene.mesh.dimension; ++d)
+    {
+      const bool across = d + 1 < scene.mesh.dimension;
+      const double end = across ? scene.mesh.width : scene.height();
+      const double low = from.empty() ? 0 : std::max(from[d], 0.0), high = to.empty() ? end : std::min(to[d], end);
+      is_outside = is_outside || (!from.empty() && from[d] < 0) || (!to.empty() && to[d] > end * (1 + 1e-9));
+      covered.push_back(fmt::format("{:g} to {:g} m", low, high));
+      double cells = across ? scene.mesh.cells_across : 0;
+      for (const ColumnLayer &layer : scene.layers)
+        cells += across ? 0 : layer.n_cells();
+      elements *= std::ldexp(cells * (high - low) / end, static_cast<int>(levels));
+    }
+  const std::string box = fmt::format("{}: refine.{}", document.where(fmt::format("refine.{}", k)), k);
+  if (is_outside)
+    warn(fmt::format("{} goes beyond the soil; it covers {}", box, fmt::join(covered, ", ")));
+  if (elements > 1e5)
+    warn(fmt::format("{} makes about {:.1g} elements. Give fewer levels, or a smaller box.", box, elements));
+}
+
 void check_refinement(const SceneDocument &document, const ColumnScene &scene)
 {
   const unsigned dimension = scene.mesh.dimension;
@@ -192,9 +251,6 @@ void check_refinement(const SceneDocument &document, const ColumnScene &scene)
     document.refuse("refine", "needs mesh.dimension 2 or 3; elements of a column are those of its layers. Give cells.");
   if (scene.analysis.kind == AnalysisKind::biaxial)
     document.refuse("refine", "has no place in a biaxial block, whose elements are alike. Remove it.");
-  if (dimension == 3 && !scene.load.bears_on_all())
-    document.refuse("refine", "needs a surcharge on all of the surface in 3 dimensions. Remove load.surcharge_from and "
-                              "surcharge_to.");
   for (std::size_t k = 0; k < scene.refine.size(); ++k)
     {
       const auto &[from, to, levels] = scene.refine[k];
@@ -213,7 +269,10 @@ void check_refinement(const SceneDocument &document, const ColumnScene &scene)
                             fmt::format("must be below the end of the soil, {} m {}.", number_text(end),
                                         d + 1 < dimension ? "across" : "high"));
         }
+      if (!scene.mesh.given)
+        note_box(document, scene, k);
     }
+  check_tied_boxes(document, scene);
 }
 
 void check_places(const SceneDocument &document, const ColumnScene &scene)

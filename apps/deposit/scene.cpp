@@ -156,15 +156,6 @@ bool ColumnMesh::is_boundary(double x) const
   return std::abs(cells - std::round(cells)) < 1e-6;
 }
 
-double ColumnLoad::surcharge_at(double x) const
-{
-  constexpr double near = 1e-9; // m
-  double part = 1;
-  for (const double beyond : {surcharge_from ? *surcharge_from - x : -1, surcharge_to ? x - *surcharge_to : -1})
-    part *= beyond > near ? 0 : beyond > -near ? 0.5 : 1;
-  return part * surcharge;
-}
-
 bool ColumnLoad::bears_on_all() const { return !surcharge_from && !surcharge_to; }
 
 std::array<double, 3> ColumnLoad::traction(double time) const

@@ -184,8 +184,6 @@ struct ColumnLoad
   double frequency = 0; ///< harmonic: amplitude sin(2 pi f t)
   double ramp = 0;      ///< smooth rise from 0 to the whole, s
 
-  /// The surcharge at a node of the surface: half of it where it ends, as areas of nodes are those of both sides, Pa.
-  double surcharge_at(double x) const;
   bool bears_on_all() const; ///< the surcharge
   /// Traction at a time as the solvers take it: tension positive, Pa. The surcharge is not in it.
   std::array<double, 3> traction(double time) const;

@@ -54,6 +54,11 @@ def response_spectrum(a, dt, periods, damping=0.05, pseudo=False):
 # --- transfer function -----------------------------------------------------------------------------------------------
 
 
+def is_cut_off(a):
+    """Whether a record ends before its motion: its Fourier integral is not that of the motion."""
+    return np.abs(a[-max(1, len(a) // 20):]).max() > 0.2 * np.abs(a).max()
+
+
 def fourier(a, dt):
     """Frequencies (Hz) and the Fourier integral of a motion that has died away, finely spaced by zeros behind it."""
     size = 2 ** int(np.ceil(np.log2(4 * len(a))))

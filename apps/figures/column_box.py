@@ -8,8 +8,8 @@ from collections import Counter
 import numpy as np
 from matplotlib.collections import PolyCollection
 
-from .column_analysis import fourier
-from .common import BLACK, BLUE, GREY, ORANGE, cut_ends, letters, note, plt
+from .column_analysis import fourier, is_cut_off
+from .common import BLACK, BLUE, GREY, NOISE, ORANGE, cut_ends, letters, note, plt
 from .drawing import draws
 
 LARGEST_SHARE = 0.15  # of the depth, that displacements are drawn with
@@ -121,6 +121,10 @@ def box_surface(column):
         panels[1, column_of_panels].set_ylabel(label)
         panels[0, column_of_panels].set_xlabel("Time (s)")
         panels[1, column_of_panels].set_xlabel("x (m)")
+    least = NOISE * max(np.abs(maps[f"displacement_{axis}"][:, indices]).max() for axis in "xz")
+    for axes in panels.flat:
+        if np.ptp(axes.get_ylim()) < 200 * least:  # of round-off alone, in cm
+            axes.set_ylim(-100 * least, 100 * least)
     panels[0, 0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, fontsize=7, handlelength=1.2)
     panels[1, 1].legend(fontsize=7)
     letters(panels)
@@ -145,6 +149,9 @@ def surface_amplification(column):
     """Fourier amplitude of the surface over that of the input, along a box with free fields, where the input's is
     largest and at half that frequency."""
     if not is_box(column) or not column.moving or column.scene["mesh"]["sides"] != "free-field":
+        return None
+    if any(is_cut_off(column[f"input_a{axis}"]) for axis in column.moving):
+        note("fig_amplification: the run ends while the input still moves; not drawn")
         return None
     spectra = [fourier(*column.motion(f"input_a{axis}")) for axis in column.moving]
     largest = [frequencies[np.argmax(np.abs(amplitude))] for frequencies, amplitude in spectra]

@@ -27,11 +27,11 @@ def exact_solution(column):
 
 
 def chosen_rows(time, exact):
-    """Rows nearest to round time factors, or spread evenly over the logarithm of time."""
+    """Rows after t = 0, which a logarithm does not have, nearest to round time factors, or spread evenly."""
     targets = np.geomspace(time[time > 0][0], time[-1], 8) if exact is None else \
         np.array(TIME_FACTORS) * exact.height**2 / exact.c
     targets = targets[targets <= 1.05 * time[-1]]
-    return np.unique([int(np.argmin(np.abs(time - t))) for t in targets])
+    return np.unique([int(np.argmin(np.where(time > 0, np.abs(time - t), np.inf))) for t in targets])
 
 
 @draws("fig_isochrones")

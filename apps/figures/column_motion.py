@@ -2,7 +2,7 @@
 """Figures of the motion of a soil column: accelerations, response spectra, transfer function."""
 import numpy as np
 
-from .column_analysis import exact_transfer, response_spectrum, smoothed_transfer, transfer_function
+from .column_analysis import exact_transfer, is_cut_off, response_spectrum, smoothed_transfer, transfer_function
 from .column_soil import MOST_DEPTHS
 from .common import BLACK, BLUE, GREY, ORANGE, letters, note, plt
 from .drawing import draws
@@ -192,7 +192,11 @@ def transfer_functions(column):
     base, the motion within; above rock also surface over the motion within, at the base."""
     if column.consolidation or len(column.time) < 8:
         return None
-    axes_moving = [axis for axis in column.horizontal if column.has(f"surface_a{axis}") and broad(column, axis)]
+    cut_off = [axis for axis in column.horizontal if is_cut_off(column[f"input_a{axis}"])]
+    if cut_off:
+        note(f"fig_transfer: the run ends while the input along {', '.join(cut_off)} still moves; not drawn")
+    axes_moving = [axis for axis in column.horizontal
+                   if axis not in cut_off and column.has(f"surface_a{axis}") and broad(column, axis)]
     if not axes_moving:
         return None
     n = len(axes_moving)

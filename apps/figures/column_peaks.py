@@ -10,11 +10,12 @@ from .drawing import draws
 from .site_response import resistance
 
 # column of profile.csv, factor, label, unit, whether it jumps between layers, and from which value on it is drawn
-SPECS = (("PGA", 1, "PGA", "m/s$^2$", False, 0),
-         ("gamma_max", 100, r"$\gamma_\mathrm{max}$", "%", True, 0),
-         ("CSR", 1, r"CSR = 0.65 $\tau/\sigma_{v0}^\prime$", "", True, 0),
+# (in SI): less is the error of a mesh
+SPECS = (("PGA", 1, "PGA", "m/s$^2$", False, 1e-2),
+         ("gamma_max", 100, r"$\gamma_\mathrm{max}$", "%", True, 1e-7),
+         ("CSR", 1, r"CSR = 0.65 $\tau/\sigma_{v0}^\prime$", "", True, 1e-3),
          ("ru_max", 1, "Largest $r_u$", "", True, MIN_RU),
-         ("PGD", 100, "Displacement", "cm", False, 0))
+         ("PGD", 100, "Displacement", "cm", False, 1e-6))
 
 
 def row_of(n):

@@ -5,7 +5,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap, PowerNorm
 from matplotlib.ticker import MaxNLocator
 
-from .common import BLACK, BLUE, GREY, ORANGE, RED, letters, note, plt
+from .common import BLACK, BLUE, GREY, NOISE, ORANGE, RED, letters, note, plt
 from .drawing import draws
 
 TIMES = ListedColormap(plt.get_cmap("viridis_r")(np.linspace(0.06, 1, 256)))  # of time: pale early, dark late
@@ -113,8 +113,11 @@ def profiles(column):
     if not column.shaken or not column.profiles:
         return None
     gamma = [column.profile(name) for name in ("gamma_xz", "gamma_yz")]
-    tau = [column.profile(name) for name in ("tau_xz", "tau_yz")]
+    tau, pressed = [column.profile(name) for name in ("tau_xz", "tau_yz")], column.profile("sigma_v")
     specs = []
+    if pressed is not None and all(values is None or np.nanmax(np.abs(values)) < NOISE * np.ptp(pressed, axis=0).max()
+                                   for values in tau):
+        gamma = tau = [None, None]
     if any(values is not None for values in gamma):
         specs.append((100 * so_far(resultant(*gamma)), r"Largest $|\gamma|$ of profiles (%)", None))
     if pore_pressure_ratio(column) is not None:
@@ -218,10 +221,13 @@ def ru_map(column):
 
 
 def moving_shears(column):
-    """Directions of the shear that some output depth feels, next to the strongest."""
+    """Directions of the shear that some output depth feels, next to the strongest, and to what vertical stress
+    changes by."""
+    vertical = [f"{prefix}_sigma_v" for _, prefix in column.points]
+    pressed = max((np.ptp(column[name]) for name in vertical if column.has(name)), default=0.0)
     largest = {axis: max((column.peak(f"{prefix}_tau_{axis}z") for _, prefix in column.points), default=0.0)
                for axis in "xy"}
-    return [axis for axis in "xy" if largest[axis] > MIN_SHARE * max(largest.values())]
+    return [axis for axis in "xy" if largest[axis] > max(MIN_SHARE * max(largest.values()), NOISE * pressed)]
 
 
 def coloured_path(axes, x, y, time, norm):

@@ -15,6 +15,7 @@ from .files import NOT_SHEARED, BadInput, Damaged, read_parsed
 
 LIQUEFIED = 0.01  # p'/p0' below which a specimen counts as liquefied, unless its scene says otherwise
 FLOOR = 1e-4  # lowest p'/p0' that is drawn
+NOISE = 1e-3  # of the largest of another component: what is less is round-off, or the error of the mesh
 SAME_VOLUME = 1e-6  # change of e below which a test is at constant volume
 TURNS = 1.5  # path over range of the strain from which a test counts as turning back
 MEDIAN_ROWS = 21

@@ -3,6 +3,7 @@
 import dataclasses
 import re
 import textwrap
+import traceback
 import typing
 
 from .common import BadInput, plain, plt, use_style
@@ -62,18 +63,32 @@ class Drawing:
             raise BadInput(error) from error
 
     def draw(self, results, out, each=lambda name, figure: None):
-        """Leaves every figure of the results in a folder. `each` is called with name and figure when it is saved."""
+        """Leaves every figure of the results in a folder. `each` is called with name and figure when it is saved.
+        Raises BadInput, when the others are drawn, with the names of those that fail, and OSError"""
         out.mkdir(parents=True, exist_ok=True)
         use_style()
-        for name, draw in self.figures.items():
-            pages = pages_of(draw(results))
-            if not pages:
-                self.undrawn(name, results)
-            for number, figure in enumerate(pages, 1):
-                page = name if number == 1 else f"{name}_{number}"
-                self._save(page, figure, results, out)
-                each(page, figure)
-                plt.close(figure)
+        failed = []
+        for name in self.figures:
+            try:
+                self._draw(name, results, out, each)
+            except OSError:
+                raise
+            except Exception as error:  # pylint: disable=broad-except  (one figure does not cost the others)
+                traceback.print_exc()
+                failed.append(f"{name} ({type(error).__name__}: {error})")
+                plt.close("all")
+        if failed:
+            raise BadInput(f"not drawn: {', '.join(failed)}")
+
+    def _draw(self, name, results, out, each):
+        pages = pages_of(self.figures[name](results))
+        if not pages:
+            self.undrawn(name, results)
+        for number, figure in enumerate(pages, 1):
+            page = name if number == 1 else f"{name}_{number}"
+            self._save(page, figure, results, out)
+            each(page, figure)
+            plt.close(figure)
 
     @staticmethod
     def _save(name, figure, results, out):

@@ -86,7 +86,7 @@ class Page:
         found = verdicts.of_run(r, drawn)
         items = "\n".join(f'<li class="{v.kind}"><strong>{html.escape(v.name)}</strong>{html.escape(v.text)}</li>'
                           for v in found)
-        missing = html.paragraph(f"No figures: {reason}") if reason else ""
+        missing = html.paragraph(f"{'Some' if self.figures else 'No'} figures: {reason}") if reason else ""
         sections = [
             html.section("How it went", f'<ul class="verdicts">\n{items}\n</ul>' if items else "", name="verdicts"),
             html.section("Summary", *summary_parts(r), name="summary"),
@@ -123,7 +123,6 @@ def leave(folder, program):
         drawn = drawing.results(folder)
         drawing.draw(drawn, folder / "figures", each)
     except (BadInput, OSError) as error:
-        note(error)
         reason = str(error)
     try:
         if failure is not None:
@@ -132,5 +131,7 @@ def leave(folder, program):
         print(folder / REPORT)
     except Exception as error:  # pylint: disable=broad-except
         note(f"{folder / REPORT}: not written, because of {type(error).__name__}: {error}")
-        return 3
-    return 2 if reason else 0
+        failure = error
+    if reason:
+        note(reason)  # last: the program that has started this repeats the last line
+    return 2 if reason else 3 if failure is not None else 0

@@ -18,13 +18,6 @@
 
 namespace isostat
 {
-/// These settings, with which a signal ends a step of packings, which takes minutes.
-inline StaticsSettings interruptible(StaticsSettings settings)
-{
-  settings.gives_up = [] { return on_any_rank(stop_requested()); };
-  return settings;
-}
-
 /// The life of a run, from its start, or from a checkpoint, to its end: folder, provenance, checkpoints, signals,
 /// failures, progress, costs. What its steps are, and what they leave, is a matter of the analysis.
 /// @tparam Solver  Dynamics or Statics
@@ -70,7 +63,7 @@ public:
       {
         fail(failure, at);
       }
-    Summary summary = report();
+    Summary summary = summarised();
     add_linear(summary, "linear solver", "linear", run_.linear_effort());
     add_linear(summary, "of settling", "settling_linear", settled_.linear);
     return {std::move(summary), times(), failure_};
@@ -159,17 +152,45 @@ protected:
   RunTimes times_;
 
 private:
+  /// A signal ends equilibria that only the summary needs, too.
+  Summary summarised()
+  {
+    try
+      {
+        return report();
+      }
+    catch (const StepGivenUp &)
+      {
+        stop();
+      }
+  }
+
+  /// The size of what may be large; LU in 3D needs numbers and operations as n^(4/3) and n^2 (George 1973).
+  void announce() const
+  {
+    constexpr double many = 4e4; // 2 GB, two minutes
+    const double n = space_.displacement_vector().size() + space_.pressure_vector().size();
+    const bool has_statics = std::is_same_v<Solver, Statics> || scene_.mesh.sides != Sides::tied;
+    if (!ranks().first() || (space_.dimension < 3 && scene_.refine.empty()))
+      return;
+    Progress(request_.quiet).say(fmt::format("{} unknowns", n));
+    if (space_.dimension == 3 && has_statics && n > many &&
+        scene_.analysis.petsc.find("-statics_pc_type") == std::string::npos)
+      warn(fmt::format("LU of {} unknowns in 3D takes gigabytes and minutes for each tangent. Iterate: --petsc "
+                       "\"-statics_pc_type {}\" (docs/column.md)",
+                       n, scene_.analysis.kind == AnalysisKind::consolidation ? "fieldsplit" : "gamg"));
+  }
+
   /// A resumed run settles, too: the time step is that of the stiffness then.
   Settled settled()
   {
+    announce();
     if (scene_.mesh.sides == Sides::tied)
       return {};
     const Progress progress(request_.quiet);
     return settle(scene_, space_.mesh(), *soil_.material, [&](const std::string &line) {
       if (scene_.has_grains() || !scene_.analysis.petsc.empty()) // else formulas settle at once
         progress.say(line);
-      if (on_any_rank(stop_requested()))
-        throw Interrupted("interrupted while the soil settles, before the first step; start it again");
     });
   }
 

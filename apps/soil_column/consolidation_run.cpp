@@ -24,7 +24,8 @@ double final_settlement(const ColumnRequest &request, const FiniteElementSpace &
   const ColumnScene &scene = request.scene;
   const SoilMaterial soil = soil_material(scene, space, 1, request.materials);
   const bool splits = scene.analysis.petsc.find("fieldsplit") != std::string::npos; // a mesh too large for LU
-  Statics drained(space, *soil.material, settings_of(scene.load, false, splits ? "-statics_pc_type gamg" : ""));
+  Statics drained(space, *soil.material,
+                  interruptible(settings_of(scene.load, false, splits ? "-statics_pc_type gamg" : "")));
   double settlement = std::numeric_limits<double>::quiet_NaN();
   try
     {

@@ -43,11 +43,27 @@ public:
       : ColumnRun<Dynamics>(request, motions, settings_of(request, motions)),
         motion_(scene_, space_, motions_, run_.time_step())
   {
+    if (n_total() > many_steps)
+      warnings_.push_back(too_many_steps());
     if (resumed_)
       motion_.restore(*resumed_);
   }
 
 private:
+  static constexpr double many_steps = 1e7; ///< of a column of formulas: some minutes
+
+  /// By the lowest elements, which the stable step mostly follows from.
+  std::string too_many_steps() const
+  {
+    const auto height = [](const ColumnLayer &layer) { return layer.thickness / layer.n_cells(); };
+    const auto lowest = std::ranges::min_element(scene_.layers, {}, height);
+    return fmt::format("the run has {:.3g} time steps of {:.3g} s, the stable one being {:.3g} s; the lowest elements, "
+                       "of layer.{}, are {:.3g} m high. Give them more height, the run a shorter duration, or expect "
+                       "hours; lines of progress say how many.",
+                       n_total(), run_.time_step(), run_.stable_step(), lowest - scene_.layers.begin(),
+                       height(*lowest));
+  }
+
   void start() override
   {
     if (soil_.grains && !scene_.mesh.distributed)

@@ -100,20 +100,19 @@ double PlateForces::distance(const Place &place) const
     }
 }
 
-/// Of the elements at the plate the row of points that is nearest to it, of refined ones that of each.
+/// Of each element at the plate the row of points that is nearest to it.
 void PlateForces::find_points()
 {
   const auto beside = [&](std::size_t q) {
     const double along = space_.position[q][2 - plate_.axis()];
     return along > patch_.from && along < patch_.to;
   };
-  const bool refined = !space_.mesh().refine.empty();
-  const std::size_t n = refined ? space_.n_gauss : space_.n_points(), n_corners = space_.pressure_nodes_per_cell();
+  const std::size_t n = space_.n_gauss, n_corners = space_.pressure_nodes_per_cell();
   for (std::size_t first = 0; first < space_.n_points(); first += n)
     {
       const Place *corners = &space_.corner[first / space_.n_gauss * n_corners];
-      if (refined && std::none_of(corners, corners + n_corners,
-                                  [this](const Place &at) { return distance(at) < 1e-9 * space_.mesh().width[0]; }))
+      if (std::none_of(corners, corners + n_corners,
+                       [this](const Place &at) { return distance(at) < 1e-9 * space_.mesh().width[0]; }))
         continue;
       double nearest = std::numeric_limits<double>::max();
       for (std::size_t q = first; q < first + n; ++q)
@@ -123,7 +122,7 @@ void PlateForces::find_points()
         if (beside(q) && distance(space_.position[q]) < 1.5 * nearest)
           {
             points_.push_back(q);
-            areas_.push_back(space_.weight[q] / (refined ? nearest : 1));
+            areas_.push_back(space_.weight[q] / nearest);
           }
     }
 }

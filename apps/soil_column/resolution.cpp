@@ -14,25 +14,74 @@
 #include <limits>
 #include <mpi.h>
 #include <numbers>
+#include <span>
 
 namespace isostat
 {
 namespace
 {
-/// The shear wave of each layer's slowest cell, by its mean slowness, m/s.
-std::vector<double> slowest_waves(const ColumnScene &scene, const std::vector<double> &velocities,
-                                  const CellTables &mesh)
+/// Of the elements of a box, in which waves run in all directions; 0: they run along z, or the mesh is of a file, whose
+/// elements are about as wide as high.
+double width_of_elements(const ColumnScene &scene)
 {
-  std::vector<double> slowest(scene.layers.size(), std::numeric_limits<double>::max());
+  return scene.mesh.sides == Sides::tied || scene.mesh.given ? 0 : scene.mesh.width / scene.mesh.cells_across;
+}
+
+/// The longer side of the elements of a layer, m.
+double length_of_elements(const ColumnScene &scene, std::size_t layer)
+{
+  return std::max(scene.layers[layer].thickness / scene.layers[layer].n_cells(), width_of_elements(scene));
+}
+
+/// The same of one that [[refine]] has halved, by its corners.
+double length_of_element(const ColumnScene &scene, const CellTables &mesh, std::size_t cell)
+{
+  if (scene.refine.empty())
+    return length_of_elements(scene, mesh.cell_layer[cell]);
+  const std::size_t n = mesh.corner.size() / mesh.n_cells();
+  double longest = 0;
+  for (const int axis : {0, 1, 2})
+    {
+      const auto [low, high] = std::ranges::minmax(std::span(&mesh.corner[cell * n], n), {},
+                                                   [axis](const Place &corner) { return corner[axis]; });
+      if (axis == 2 || width_of_elements(scene) > 0)
+        longest = std::max(longest, high[axis] - low[axis]);
+    }
+  return longest;
+}
+
+struct SlowCell
+{
+  double velocity = std::numeric_limits<double>::max(); ///< of the shear wave, by its mean slowness, m/s
+  double length = 1;                                    ///< m
+};
+
+/// The cell of each layer that carries least: the one with the lowest velocity over length.
+std::vector<SlowCell> slowest_cells(const ColumnScene &scene, const std::vector<double> &velocities,
+                                    const CellTables &mesh)
+{
+  std::vector<SlowCell> slowest(scene.layers.size());
   for (std::size_t cell = 0; cell < mesh.n_cells(); ++cell)
     {
-      const std::size_t layer = mesh.cell_layer[cell], n = mesh.points_per_cell();
+      const std::size_t n = mesh.points_per_cell();
       double slowness = 0;
       for (std::size_t point = cell * n; point < (cell + 1) * n; ++point)
         slowness += 1 / (velocities[point] * static_cast<double>(n));
-      slowest[layer] = std::min(slowest[layer], 1 / slowness);
+      const double length = length_of_element(scene, mesh, cell);
+      SlowCell &least = slowest[mesh.cell_layer[cell]];
+      if (1 / slowness / length < least.velocity / least.length)
+        least = {1 / slowness, length};
     }
-  MPI_Allreduce(MPI_IN_PLACE, slowest.data(), static_cast<int>(slowest.size()), MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
+  for (SlowCell &least : slowest)
+    {
+      double ratio = least.velocity / least.length;
+      MPI_Allreduce(MPI_IN_PLACE, &ratio, 1, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
+      double of_least[2] = {least.velocity, least.length};
+      if (least.velocity / least.length > ratio)
+        of_least[0] = of_least[1] = std::numeric_limits<double>::max();
+      MPI_Allreduce(MPI_IN_PLACE, of_least, 2, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
+      least = {of_least[0], of_least[1]};
+    }
   return slowest;
 }
 
@@ -63,19 +112,6 @@ bool drifts(const Motion &motion, const ColumnMotion &asked)
   for (std::size_t i = 0; i < motion.accelerations().size(); ++i)
     fastest = std::max(fastest, std::abs(motion.velocity(motion.delay() + static_cast<double>(i) * motion.interval())));
   return way > very_far || (way > far && std::abs(motion.velocity(end)) > share * fastest);
-}
-
-/// Of the elements of a box, in which waves run in all directions; 0: they run along z, or the mesh is of a file, whose
-/// elements are about as wide as high.
-double width_of_elements(const ColumnScene &scene)
-{
-  return scene.mesh.sides == Sides::tied || scene.mesh.given ? 0 : scene.mesh.width / scene.mesh.cells_across;
-}
-
-/// The longer side of the elements of a layer, m.
-double length_of_elements(const ColumnScene &scene, std::size_t layer)
-{
-  return std::max(scene.layers[layer].thickness / scene.layers[layer].n_cells(), width_of_elements(scene));
 }
 
 /// What makes the elements of a layer smaller.
@@ -152,15 +188,17 @@ std::vector<double> shear_velocities(const ColumnScene &scene, const Material &m
 std::vector<CarriedWaves> carried_waves(const ColumnScene &scene, const std::vector<double> &velocities,
                                         const std::vector<double> &softened, const CellTables &mesh)
 {
-  const std::vector<double> start = slowest_waves(scene, velocities, mesh),
-                            end = softened.empty() ? softened : slowest_waves(scene, softened, mesh);
+  const std::vector<SlowCell> start = slowest_cells(scene, velocities, mesh),
+                              end = softened.empty() ? std::vector<SlowCell>() : slowest_cells(scene, softened, mesh);
+  const auto carried = [&](const SlowCell &cell) {
+    return cell.velocity * (scene.mesh.degree / (nodes_per_wave * cell.length));
+  };
   std::vector<CarriedWaves> waves;
   for (std::size_t k = 0; k < start.size(); ++k)
     {
-      const double length = length_of_elements(scene, k), per_velocity = scene.mesh.degree / (nodes_per_wave * length);
-      waves.push_back({length, start[k] * per_velocity, {}});
+      waves.push_back({start[k].length, carried(start[k]), {}});
       if (!end.empty())
-        waves.back().softened = end[k] * per_velocity;
+        waves.back().softened = carried(end[k]);
     }
   return waves;
 }
@@ -201,30 +239,32 @@ std::string coarse_elements(const ColumnScene &scene, const std::vector<double> 
                             const std::array<Motion, 3> &motions)
 {
   const double frequency = frequency_of_interest(scene, motions);
-  const std::vector<double> slowest = slowest_waves(scene, velocities, mesh);
+  const std::vector<SlowCell> slowest = slowest_cells(scene, velocities, mesh);
   std::size_t worst = 0;
   double fewest = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < slowest.size(); ++k)
     {
-      const double nodes = slowest[k] / frequency * scene.mesh.degree / length_of_elements(scene, k);
+      const double nodes = slowest[k].velocity / frequency * scene.mesh.degree / slowest[k].length;
       if (nodes < fewest)
         worst = k, fewest = nodes;
     }
   if (frequency == 0 || fewest >= nodes_per_wave)
     return "";
   const Layer &soft = scene.layers[worst];
-  const double length = length_of_elements(scene, worst), enough = length * fewest / nodes_per_wave;
+  const auto [velocity, length] = slowest[worst];
+  const double enough = length * fewest / nodes_per_wave;
   const auto count = [&](const std::string &key, double of) {
     return fmt::format("{} to {:.0f} or more", key, std::ceil(of / enough));
   };
   std::string remedy = fmt::format("{} to {:.2g} m or less", size_of_elements(scene, worst), enough);
   if (!scene.mesh.given)
-    remedy = width_of_elements(scene) == length ? count("mesh.cells_across", scene.mesh.width)
-                                                : count(fmt::format("layer.{}.cells", worst), soft.thickness);
+    remedy = width_of_elements(scene) == length_of_elements(scene, worst)
+                 ? count("mesh.cells_across", scene.mesh.width)
+                 : count(fmt::format("layer.{}.cells", worst), soft.thickness);
   return fmt::format(
       "the elements of layer.{}{} are too long for the shortest wave of interest: {:.1f} nodes in {:.3g} m ({:.3g} m/s "
       "at {:.3g} Hz), {} are needed. Set {}, or analysis.highest_frequency to what matters.",
-      worst, quoted_name(soft), fewest, slowest[worst] / frequency, slowest[worst], frequency, nodes_per_wave, remedy);
+      worst, quoted_name(soft), fewest, velocity / frequency, velocity, frequency, nodes_per_wave, remedy);
 }
 
 std::string coarse_drainage(const ColumnScene &scene, const FiniteElementSpace &space, const Material &material)

@@ -4,7 +4,6 @@
 #include "apps/deposit/deposit_space.hpp"
 #include "base/error.hpp"
 #include "fem/solve/dynamics.hpp"
-#include "fem/solve/statics.hpp"
 
 #include <fmt/format.h>
 
@@ -19,14 +18,10 @@ bool has_plate(const ColumnScene &scene, PlateSide side)
   return scene.analysis.kind == AnalysisKind::plate && scene.plate.on == side;
 }
 
-/// A surcharge on a part of the surface is on a separate face where elements at its ends may be of two sizes, so that
-/// half of a node's area is not that below the surcharge (ColumnLoad::surcharge_at).
-bool has_strip(const ColumnScene &scene) { return !scene.refine.empty() && !scene.load.bears_on_all(); }
-
-/// Faces of the surface; a plate has one of its own.
+/// Faces of the surface that bear the surcharge; a plate, and a surcharge on a part, have one of their own.
 std::vector<Face> surfaces(const ColumnScene &scene)
 {
-  if (has_strip(scene))
+  if (!scene.load.bears_on_all())
     return {patch_face(0)};
   if (has_plate(scene, PlateSide::surface))
     return {Face::surface, patch_face(0)};
@@ -54,10 +49,7 @@ StaticsSettings settings_of(const ColumnScene &scene, const SoilProfile &soil)
   };
   if (scene.load.surcharge > 0)
     for (Face face : surfaces(scene))
-      settings.tractions.push_back({face, [&scene](double t, const Place &place) {
-                                      const ColumnLoad &load = scene.load;
-                                      const double pressure =
-                                          has_strip(scene) ? load.surcharge : load.surcharge_at(place[0]);
+      settings.tractions.push_back({face, [pressure = scene.load.surcharge](double t, const Place &) {
                                       return std::array<double, 3>{0, 0, -t * pressure};
                                     }});
   settings.petsc = scene.analysis.petsc;
@@ -75,12 +67,12 @@ Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &materia
 {
   const SoilProfile soil = soil_profile(scene);
   MeshSpec cut = mesh;
-  if (has_strip(scene))
+  if (!scene.load.bears_on_all())
     cut.patches.push_back(
         {Face::surface, scene.load.surcharge_from.value_or(0), scene.load.surcharge_to.value_or(scene.mesh.width)});
   const std::unique_ptr<const FiniteElementSpace> its_space = discretised(scene, cut, box_supports(scene));
   const FiniteElementSpace &space = *its_space;
-  Statics statics(space, material, settings_of(scene, soil));
+  Statics statics(space, material, interruptible(settings_of(scene, soil)));
   try
     {
       for (unsigned k = 1; k <= steps; ++k)
@@ -91,6 +83,10 @@ Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &materia
                                    statics.effort().trials, statics.effort().convergence(),
                                    statics.linear_effort().text()));
         }
+    }
+  catch (const StepGivenUp &)
+    {
+      throw Interrupted("interrupted while the soil settles, before the first step; start it again");
     }
   catch (const RunFailure &failure)
     {

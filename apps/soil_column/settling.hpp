@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "apps/common/interrupt.hpp"
+#include "apps/deposit/ranks.hpp"
 #include "apps/deposit/scene.hpp"
 #include "fem/linear/linear_effort.hpp"
 #include "fem/material/material.hpp"
+#include "fem/solve/statics.hpp"
 
 #include <functional>
 
 namespace isostat
 {
+/// These settings, with which a signal ends a step, which takes minutes.
+inline StaticsSettings interruptible(StaticsSettings settings)
+{
+  settings.gives_up = [] { return on_any_rank(stop_requested()); };
+  return settings;
+}
+
 struct Settled
 {
   double largest = 0;  ///< displacement, m
@@ -23,6 +33,7 @@ struct Settled
 /// @param mesh  of the material's points
 /// @param after_step  called after each step with a line on it; what it throws goes through
 /// @throws RunFailure  the soil does not bear its weight and the surcharge
+/// @throws Interrupted  by a signal
 /// tested: tests/apps/box_test.py
 Settled settle(const ColumnScene &scene, const MeshSpec &mesh, Material &material,
                const std::function<void(const std::string &)> &after_step = {});

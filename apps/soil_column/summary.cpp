@@ -137,8 +137,9 @@ void add_waves(const ColumnSummary &s, const ColumnScene &scene, Summary &summar
     {
       const ColumnLayer &layer = scene.layers[k];
       const auto &[length, at_start, softened] = s.waves[k];
-      summary.row(k == 0 ? "waves carried" : " ", "{}: {} elements of {:.3g} m, up to {:.3g} Hz at the start{}",
-                  layer.name.empty() ? fmt::format("layer {}", k) : layer.name, layer.n_cells(), length, at_start,
+      summary.row(k == 0 ? "waves carried" : " ", "{}: {}elements of {:.3g} m, up to {:.3g} Hz at the start{}",
+                  layer.name.empty() ? fmt::format("layer {}", k) : layer.name,
+                  scene.refine.empty() ? fmt::format("{} ", layer.n_cells()) : "", length, at_start,
                   softened ? fmt::format(", {:.3g} Hz where softest", *softened) : "");
       summary["layers"][k].update({{"cells", layer.n_cells()},
                                    {"element_length", length},

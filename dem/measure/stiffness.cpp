@@ -3,7 +3,6 @@
 
 #include "base/error.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
@@ -334,18 +333,5 @@ double affine_modulus(const LiveContacts &contacts, double volume, const Mat3 &g
     sum += k.normal * along * along + k.shear * (motion.squaredNorm() - along * along);
   });
   return sum / volume;
-}
-
-Mat3 column_stiffness(const Mat6 &stiffness, int axis)
-{
-  constexpr std::array<std::array<int, 3>, 3> rows{{{0, 5, 4}, {1, 5, 3}, {2, 4, 3}}};
-  return stiffness(rows[axis], rows[axis]);
-}
-
-WaveSpeeds wave_speeds(const Mat6 &stiffness, double density, int axis)
-{
-  const Eigen::SelfAdjointEigenSolver<Mat3> waves(column_stiffness(stiffness, axis), Eigen::EigenvaluesOnly);
-  const Vec3 speed = (waves.eigenvalues().cwiseMax(0) / density).cwiseSqrt();
-  return {speed[2], speed[1], speed[0]};
 }
 } // namespace isostat

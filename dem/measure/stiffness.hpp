@@ -70,22 +70,4 @@ Vec3 affine_moduli(const LiveContacts &contacts, double volume);
 /// @param volume  m3     cost one pass over the contacts
 /// tested: tests/dem/assembly/assembly_test.cpp (against affine_stiffness)
 double affine_modulus(const LiveContacts &contacts, double volume, const Mat3 &gradient);
-
-/// What remains of C where only the strains of a soil column can occur: its direction a lengthens, and shears against
-/// the lateral directions b < c. Rows and columns: aa, ab, ac with engineering shear; for axis 2: zz, xz, yz.
-/// It is the acoustic tensor C_iaja in that order. @param axis  0, 1, 2 = x, y, z     @return Pa
-/// tested: tests/dem/measure/stiffness_test.cpp
-Mat3 column_stiffness(const Mat6 &stiffness, int axis);
-
-/// Speeds of plane waves, m/s: p >= s1 >= s2. Where the axis is no axis of symmetry, p and s are only nearly lengthwise
-/// and crosswise.
-struct WaveSpeeds
-{
-  double p, s1, s2;
-};
-
-/// Christoffel: rho c^2 = eigenvalues of column_stiffness along `axis`. A negative one, from rounding, counts as zero.
-/// @param density  bulk density of the soil, dry or with its water, kg/m3, > 0
-/// tested: tests/dem/measure/stiffness_test.cpp (isotropic, coupled)
-WaveSpeeds wave_speeds(const Mat6 &stiffness, double density, int axis);
 } // namespace isostat

@@ -65,6 +65,10 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, do
                                           const Preparation &how)
 {
   Search search(cloud, law, target, tolerance, how);
+  const double written = how.specimen.void_ratio.value_or(target);
+  const std::string requested = written == target
+                                    ? fmt::format("{:.4f}", target)
+                                    : fmt::format("{:.4f} ({:.4f} before it is rebalanced)", written, target);
   const double guess = std::tan(8 * std::numbers::pi / 180), loosest = std::tan(std::numbers::pi / 3);
   const double at_guess = search(guess);
   if (at_guess == 0)
@@ -81,9 +85,9 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, do
     return search.best;
   if (at_near * at_other > 0)
     throw InputError(fmt::format(
-        "specimen density cannot be reached: void ratio {:.4f} was requested, but isotropic "
+        "specimen density cannot be reached: void ratio {} was requested, but isotropic "
         "compression {} gives {:.4f}, the {} possible. Choose a {} density, or another grading or pressure.{}",
-        target, other == 0 ? "without friction" : "with 60 deg of friction", target + at_other,
+        requested, other == 0 ? "without friction" : "with 60 deg of friction", target + at_other,
         other == 0 ? "densest" : "loosest", other == 0 ? "lower" : "higher",
         other == 0 && how.specimen.domain == "rigid-box"
             ? " Walls loosen a box of few grains: more grains, or specimen.domain = \"periodic-cell\", pack denser."
@@ -100,10 +104,9 @@ PreparedDensity find_preparation_friction(const Cloud &cloud, const Law &law, do
       if (!search.found())
         search(std::max(0.0, centre + side * k * bracket));
   if (!search.found())
-    throw RunFailure(
-        fmt::format("no preparation friction gives void ratio {:.4f} within {:.4f}; nearest {:.4f} at {:.3f} "
-                    "deg. Raise specimen.density_tolerance or the number of grains.",
-                    target, tolerance, search.best.void_ratio, degrees(search.best.friction)));
+    throw RunFailure(fmt::format("no preparation friction gives void ratio {} within {:.4f}; nearest {:.4f} at {:.3f} "
+                                 "deg. Raise specimen.density_tolerance or the number of grains.",
+                                 requested, tolerance, search.best.void_ratio, degrees(search.best.friction)));
   return search.best;
 }
 

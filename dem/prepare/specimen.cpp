@@ -39,7 +39,10 @@ void describe(const Scene &scene, Specimen &specimen)
   if (scene.sand.name.empty())
     return;
   specimen.provenance["sand"] = sand_text(scene);
-  for (const std::string &warning : beyond_sand(scene, numbers.at("void_ratio")))
+  const double e = numbers.at("void_ratio");
+  const std::string warning = beyond_void_ratios(scene.sand, fmt::format("the packing has e = {:.4f}", e), e);
+  const bool is_known = scene.specimen.void_ratio || scene.specimen.relative_density; // beyond_sand() has seen it
+  if (!is_known && !warning.empty())
     warn(warning);
 }
 

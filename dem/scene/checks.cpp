@@ -47,6 +47,21 @@ void check_limits(const SceneDocument &document, const SpecimenSpec &specimen)
     document.refuse("specimen.relative_density", no_limits);
 }
 
+/// Keys of the preparation next to a packing that is prepared. Defaults, as the printed scene has them, do no harm.
+void check_given(const SceneDocument &document, const SpecimenSpec &specimen)
+{
+  const SpecimenSpec usual;
+  if (!specimen.file.empty())
+    for (const auto &[path, differs] :
+         {std::pair{"specimen.expansion", specimen.expansion != usual.expansion},
+          {"specimen.density_tolerance", specimen.density_tolerance != usual.density_tolerance},
+          {"specimen.damping", specimen.damping != usual.damping}})
+      if (differs && document.find(path))
+        document.refuse(path, fmt::format("has no effect with specimen.file ({}): that packing is prepared. Leave it "
+                                          "out, or prepare a specimen with it.",
+                                          document.where("specimen.file")));
+}
+
 void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
 {
   if (specimen.consolidation == "k0")
@@ -59,6 +74,7 @@ void check_specimen(const SceneDocument &document, const SpecimenSpec &specimen)
                                     document.where("specimen.file")));
     }
   check_limits(document, specimen);
+  check_given(document, specimen);
   if (document.find("specimen.file") && specimen.file.empty())
     document.refuse("specimen.file", "must name a file. Give the path of a prepared specimen.");
   if (!specimen.file.empty() && !specimen_place(specimen.file).path.ends_with(".h5"))

@@ -103,6 +103,9 @@ void take_sand(SceneDocument &document, const std::string &scene_path)
           fmt::format("{}:{}: {}; a sand has the tables [{}] and nothing else. Remove it, or give it in the "
                       "scene.",
                       file, part.source().begin.line, word.str(), fmt::join(parts_of_sand, "], [")));
+  if (toml::table *specimen = sand["specimen"].as_table(); specimen && document.find("specimen.file"))
+    for (const char *key : {"expansion", "density_tolerance", "damping"}) // the sand's preparation
+      specimen->erase(key);
   if (!sand.contains("sand"))
     sand.insert("sand", toml::table{});
   sand["sand"].as_table()->insert("name", fs::path(file).stem().string()); // unless it is there
@@ -130,15 +133,28 @@ std::string beyond_pressures(const SandSpec &sand, const std::string &what, doub
   return beyond(sand, what, range_left(pressure, sand.lowest_pressure, sand.highest_pressure, 1e3, " kPa"));
 }
 
-std::vector<std::string> beyond_sand(const Scene &scene, double void_ratio)
+std::string beyond_void_ratios(const SandSpec &sand, const std::string &what, double void_ratio)
+{
+  return beyond(sand, what, range_left(void_ratio, sand.lowest_void_ratio, sand.highest_void_ratio, 1, ""));
+}
+
+std::vector<std::string> beyond_sand(const Scene &scene)
 {
   const SandSpec &sand = scene.sand;
+  const SpecimenSpec &specimen = scene.specimen;
   std::vector<std::string> found;
+  if (specimen.void_ratio)
+    found.push_back(beyond_void_ratios(sand, fmt::format("specimen.void_ratio = {:g}", *specimen.void_ratio),
+                                       *specimen.void_ratio));
+  if (specimen.relative_density && specimen.has_limits())
+    {
+      const double e = *specimen.e_max - *specimen.relative_density * (*specimen.e_max - *specimen.e_min);
+      found.push_back(beyond_void_ratios(
+          sand, fmt::format("specimen.relative_density = {:g} is e = {:.3g}", *specimen.relative_density, e), e));
+    }
   if (takes_pressure(scene))
     found.push_back(beyond_pressures(sand, fmt::format("specimen.pressure = {:g} kPa", scene.specimen.pressure / 1e3),
                                      scene.specimen.pressure));
-  found.push_back(beyond(sand, fmt::format("the packing has e = {:.4f}", void_ratio),
-                         range_left(void_ratio, sand.lowest_void_ratio, sand.highest_void_ratio, 1, "")));
   for (std::size_t i = 0; i < scene.stages.size(); ++i)
     {
       const auto *servo = as<ServoStage>(scene.stages[i]);

@@ -44,7 +44,8 @@ SandSpec sand_from(const std::string &text);
 /// Why a value is outside of the range in which a sand was compared with tests; empty: it is not, or there is none.
 /// @param what  "specimen.pressure = 800 kPa"
 std::string beyond_pressures(const SandSpec &sand, const std::string &what, double pressure);
-/// What of a scene is: pressures, strains, and the void ratio of its packing.
+std::string beyond_void_ratios(const SandSpec &sand, const std::string &what, double void_ratio);
+/// What of a scene is: pressures, strains, and the density that it asks for.
 /// tested: tests/dem/scene/sand_test.cpp
-std::vector<std::string> beyond_sand(const Scene &scene, double void_ratio);
+std::vector<std::string> beyond_sand(const Scene &scene);
 } // namespace isostat

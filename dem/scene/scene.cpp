@@ -3,6 +3,7 @@
 
 #include "base/scene/reader.hpp"
 #include "base/scene/writer.hpp"
+#include "base/tell.hpp"
 #include "dem/scene/schema.hpp"
 
 #include <cmath>
@@ -80,6 +81,8 @@ Scene read_scene(const std::string &path, const std::vector<std::string> &overri
       }
   if (scene.output.folder.empty())
     scene.output.folder = results_folder(path);
+  for (const std::string &warning : beyond_sand(scene))
+    warn(warning);
   return scene;
 }
 

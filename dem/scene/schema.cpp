@@ -118,9 +118,10 @@ constexpr Key specimen_keys[] = {
    .presence = Presence::optional, .value = "10 deg", .range = right_angle, .reason = because_tan,
    .group = "preparation", .text = "Angle of friction while it is compressed; the density is the result."},
   {.path = "expansion", .field = member<&SpecimenSpec::expansion>, .value = "0", .range = {0, 0.1},
-   .reason = "because a cloud has no memory of its compaction",
+   .reason = "because a packing that is opened by more is a cloud without memory; 0.006 to 0.03 have been used",
    .text = "Linear strain by which the compacted packing is opened. Its grains are shaken and it is compressed again "
-           "with the friction of the test: nearly as dense, with fewer contacts. 0: it is not."},
+           "with the friction of the test: nearly as dense, with fewer contacts. 0: it is not. Not together with "
+           "`file`, as `density_tolerance` and `damping`."},
   {.path = "file", .field = member<&SpecimenSpec::file>, .presence = Presence::optional, .value = "specimens/dr64.h5",
    .group = "preparation",
    .text = "A prepared specimen or a snapshot (.h5), or an entry of a library of specimens (\"library.h5#s0007\"). "

@@ -132,10 +132,18 @@ void Statics::advance(double duration, bool flow)
       catch (const StepGivenUp &)
         {
           problem_->material.rollback();
+          if (report_.effort.substeps > 0)
+            {
+              state_ = std::move(before_->first);
+              problem_->material.unpack(before_->second);
+            }
           throw;
         }
       if (solved)
         {
+          const bool is_whole = done + size == 1 && !problem_->settings.pore_water;
+          if (problem_->settings.gives_up && report_.effort.substeps == 0 && !is_whole)
+            before_.emplace(state_, problem_->material.pack());
           substep.accept(state_);
           done += size;
           state_.time = start_time + done * duration;

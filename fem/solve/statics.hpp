@@ -88,6 +88,7 @@ private:
 
   std::unique_ptr<StaticsProblem> problem_;
   StaticsState state_;
+  std::optional<std::pair<StaticsState, MaterialState>> before_; ///< a step of several sub-steps that may be given up
   StaticsReport report_;
 };
 } // namespace isostat

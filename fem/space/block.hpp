@@ -16,8 +16,8 @@ struct FaceComponent
   unsigned component;
 };
 
-/// A part of a face that is held or loaded apart from the rest of it: of base or surface from x to x, of x_low or
-/// x_high from z to z, on boundaries between elements.
+/// A part of a face that is held or loaded apart from the rest of it: in 2D and 3D of base or surface from x to x, of
+/// sides from z to z, on boundaries between elements.
 struct Patch
 {
   Face of;

@@ -160,8 +160,8 @@ template <int dim>
 void cut_patch(const MeshSpec &spec, std::size_t k, dealii::Triangulation<dim> &mesh)
 {
   const Patch &patch = spec.patches[k];
-  if (dim != 2 || is_patch(patch.of) || boundary_id<dim>(patch.of) < 0)
-    throw InputError(fmt::format("patch {}: must be of a face of a mesh in 2 dimensions", k));
+  if (dim == 1 || is_patch(patch.of) || boundary_id<dim>(patch.of) < 0)
+    throw InputError(fmt::format("patch {}: must be of a face of a mesh in 2 or 3 dimensions", k));
   const int along = patch.of == Face::base || patch.of == Face::surface ? 0 : dim - 1;
   const auto id = static_cast<dealii::types::boundary_id>(boundary_id<dim>(patch.of));
   double from = patch.to, to = patch.from;

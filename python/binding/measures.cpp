@@ -87,10 +87,9 @@ void bind_measures(py::module_ &module)
             return condensed_stiffness(s, yielding_contacts_resist ? Sliding::elastic : Sliding::plastic);
           },
           py::arg("yielding_contacts_resist") = true,
-          "Instantaneous elastic stiffness of a periodic packing, (6, 6), Pa: stress xx, yy, zz, yz, xz, xy for strain "
-          "in\n"
-          "the same order, shear as gamma. yielding_contacts_resist=False: tangent of continued loading, in which\n"
-          "contacts within 1 % of a limit follow it; not symmetric.")
+          "Instantaneous stiffness of a periodic packing, (6, 6), Pa: stress xx, yy, zz, yz, xz, xy for strain in\n"
+          "the same order, shear as gamma. All contacts elastic; with yielding_contacts_resist=False those within 1 %\n"
+          "of a limit yield on, as in continued loading; not symmetric, and wrong for unloading.")
       .def("measures", &measures,
            "Scalars that a packing alone gives, as columns of the history, by name; SI, compression positive. "
            "measure_units()\n"

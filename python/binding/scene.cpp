@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes and contact laws.   tested: tests/python/scene_test.py
 #include "dem/scene/scene.hpp"
+#include "base/tell.hpp"
 #include "dem/law/parameters.hpp"
 #include "dem/prepare/specimen.hpp"
 #include "python/binding/binding.hpp"
@@ -31,9 +32,15 @@ void bind_scene(py::module_ &module)
       });
 
   py::class_<Scene>(module, "Scene")
-      .def(py::init(
-               [](const std::string &text, const std::string &name, const std::vector<std::string> &overrides,
-                  bool is_file) { return is_file ? read_scene(name, overrides) : parse_scene(text, name, overrides); }),
+      .def(py::init([](const std::string &text, const std::string &name, const std::vector<std::string> &overrides,
+                       bool is_file) {
+             if (is_file)
+               return read_scene(name, overrides);
+             Scene scene = parse_scene(text, name, overrides);
+             for (const std::string &warning : beyond_sand(scene))
+               warn(warning);
+             return scene;
+           }),
            py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("is_file") = false)
       .def_readonly("title", &Scene::title, "What heads tables and figures.")
       .def_readonly("law", &Scene::contact, "The contact law.")

@@ -15,11 +15,11 @@ import numpy as np
 import column_fixture as fixture
 from figures.column_analysis import (Terzaghi, exact_transfer, response_spectrum, smoothed,
                                      transfer_function)
-from figures.column_consolidation import settlement, unit_of
+from figures.column_consolidation import isochrones, settlement, unit_of
 from figures.column_results import Column, quantity
 from figures.column_grains import first, shade_index
-from figures.column_soil import outline
-from figures.common import plt, use_style
+from figures.column_soil import moving_shears, outline
+from figures.common import BadInput, plt, use_style
 from figures.soil_column import DRAWING
 from element_figures_test import covered
 from support import ROOT, TIME_LIMIT, ToleranceTest
@@ -157,13 +157,43 @@ class Figures(ToleranceTest):
         column = DRAWING.results(fixture.elastic(self.folder / "run", end=3.0))
         with contextlib.redirect_stderr(io.StringIO()) as notes:
             plt.close(DRAWING.figures["fig_transfer"](column))
-        self.assertIn("still moves", notes.getvalue())
+            self.assertIn("surface still moves", notes.getvalue())
+            half = int(np.argmax(np.abs(column["input_ax"]))) + 3  # amid the pulse
+            column.columns = {name: values[:half] for name, values in column.columns.items()}
+            self.assertIsNone(DRAWING.figures["fig_transfer"](column))
+        self.assertIn("fig_transfer: the run ends while the input along x still moves", notes.getvalue())
+
+    def test_shear_that_is_noise_is_not_drawn(self):
+        """Next to a change of the vertical stress, as under a load on all of a box."""
+        column = DRAWING.results(fixture.elastic(self.folder / "run"))
+        self.assertEqual(moving_shears(column), ["x"])
+        strongest = max(column.peak(f"{prefix}_tau_xz") for _, prefix in column.points)
+        for _, prefix in column.points:
+            column.columns[f"{prefix}_sigma_v"] = np.linspace(0, 2e3 * strongest, len(column.time))
+        self.assertEqual(moving_shears(column), [])
 
     def test_consolidation(self):
         text = self.expect(fixture.consolidation(self.folder / "run"), "isochrones", "settlement")
         for what in ("pore pressure", "settlement"):
             said = re.search(what + r": largest difference from Terzaghi's series (\S+)", text)
             self.assert_below(float(said[1]), 1e-3, "the fixture is the series with fewer terms")
+
+    def test_one_that_fails_costs_no_other(self):
+        """A history whose settlement has another length than its time."""
+        column = DRAWING.results(fixture.consolidation(self.folder / "run"))
+        column.columns["settlement"] = column["settlement"][1:]
+        with contextlib.redirect_stdout(io.StringIO()) as drawn, contextlib.redirect_stderr(io.StringIO()), \
+                self.assertRaisesRegex(BadInput, r"^not drawn: fig_settlement \(IndexError: .*\)$"):
+            DRAWING.draw(column, self.folder)
+        self.assertEqual([path.name for path in self.folder.glob("*.png")], ["fig_isochrones.png"])
+        self.assertIn("fig_isochrones.png", drawn.getvalue())
+
+    def test_isochrones_of_late_times_alone(self):
+        """A logarithm of time has no 0, though it is nearest to the first round time factors."""
+        column = Column(fixture.consolidation(self.folder / "run"))
+        for name in ("time", "u"):
+            column.profiles[name] = column.profiles[name][[0, -1]]
+        self.assertEqual(len(isochrones(column).axes), 2)
 
     def test_the_series_is_smooth_where_rows_are_few(self):
         column = Column(fixture.consolidation(self.folder / "run", rows=4))

@@ -2,6 +2,7 @@
 """soil_column as a user runs it: its scenes, what a row holds, mistakes."""
 import re
 import shlex
+import signal
 
 import h5py
 import numpy as np
@@ -148,6 +149,12 @@ class Mistakes(ColumnTest):
     def test_more_steps_than_can_be_counted(self):
         self.refuse(["analysis.duration = 1e+17 s: must be at most ", "because the time step is "], "--overwrite",
                     *settings(analysis__duration="1e17 s"))
+
+    def test_steps_without_end_are_announced(self):
+        scene = self.write("thin.toml", SOIL)
+        command = self.command("soil_column", scene, "-o", "thin", *settings(analysis__time_step="1e-5 ms"))
+        said = self.stop_when((self.folder / "thin/history.csv").exists, "files", signal.SIGTERM, command)[1]
+        self.assertRegex(said, r"warning: the run has \S+e\+\d+ time steps of 1e-08 s, .* of layer\.0, are \S+ m high")
 
     def test_time_step_above_the_stable_one(self):
         self.refuse(["time step", "must be <=", "Give a smaller one"], "--overwrite",

@@ -2,6 +2,7 @@
 """isostat study: every study says what it would run; a tiny one runs, is stopped, continues, fails, reports."""
 import contextlib
 import io
+import json
 import signal
 
 from isostat.campaign import study
@@ -84,9 +85,14 @@ class Studies(AppTest):
         self.assert_done(result)
         self.assertRegex(result.stdout, "^[1-9].* runs, ")
         self.assertFalse((self.folder / "results").exists())
-        listed = self.study()
+        listed = self.study("--list")
         self.assert_done(listed)
-        self.assertEqual([line.split()[0] for line in listed.stdout.splitlines()[2:]], names)
+        self.assertEqual(listed.stdout, self.study().stdout)
+        rows = [line.split(maxsplit=2) for line in listed.stdout.splitlines()[3:-1]]
+        self.assertEqual([row[0] for row in rows], names)
+        stamps = json.loads((ROOT / "studies/stamps.json").read_text(encoding="utf-8"))
+        self.assertEqual({row[0]: row[1] for row in rows if row[0] in stamps},
+                         {name: str(of["minutes"]) for name, of in stamps.items()})
         self.assertIn("--dry-run", self.study("--help").stdout)
 
     def test_it_runs_what_is_missing(self):

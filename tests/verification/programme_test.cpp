@@ -183,9 +183,12 @@ TEST(RelativeDensity, SaysWhenItCannotBeReached)
   Watcher watcher;
   for (const double impossible : {0.30, 1.60})
     expect_parts(refusal([&] {
-                   find_preparation_friction(cloud, test::paper_law(), impossible, 0.003, {{}, watcher});
+                   SpecimenSpec asked; // a second search aims beyond what the user wrote
+                   asked.void_ratio = impossible - 0.01;
+                   find_preparation_friction(cloud, test::paper_law(), impossible, 0.003, {asked, watcher});
                  }),
-                 {"cannot be reached"});
+                 {"cannot be reached", fmt::format("void ratio {:.4f} ({:.4f} before it is rebalanced) was requested",
+                                                   impossible - 0.01, impossible)});
 }
 } // namespace
 } // namespace isostat

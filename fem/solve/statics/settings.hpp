@@ -44,8 +44,8 @@ struct StaticsSettings
   double largest_part = 0.1;
   std::string petsc = {}; ///< options of PETSc for the linear system, each beginning with -statics_; empty: LU
   double min_force = 0;   ///< N, smallest force scale: for materials whose stress is noisy by tolerance times this
-  /// Asked before each trial of the material in a step of which nothing is kept yet; true: the step is given up.
-  /// Empty: never.
+  /// Asked before each trial of the material and each factorisation; true: the step is given up, with all its
+  /// sub-steps. Empty: never.
   std::function<bool()> gives_up = {};
 };
 

@@ -89,8 +89,15 @@ bool StaticsSubstep::in_equilibrium() const
   return left == 0 && merit(0) <= problem_.settings.newton.tolerance * report.scale;
 }
 
+void StaticsSubstep::ask_to_go_on() const
+{
+  if (const auto &gives_up = problem_.settings.gives_up; gives_up && gives_up())
+    throw StepGivenUp();
+}
+
 bool StaticsSubstep::set_tangent(std::span<const Stiffness> tangents)
 {
+  ask_to_go_on(); // a factorisation takes minutes
   bool good = true;
   try
     {
@@ -117,8 +124,7 @@ void StaticsSubstep::find_step()
 bool StaticsSubstep::evaluate()
 {
   const FiniteElementSpace &space = problem_.space;
-  if (const auto &gives_up = problem_.settings.gives_up; gives_up && report.effort.substeps == 0 && gives_up())
-    throw StepGivenUp();
+  ask_to_go_on();
   if (space.shared_out())
     increment.u.update_ghost_values();
   space.gradients(increment.u, gradients_);

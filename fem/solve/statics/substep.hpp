@@ -40,7 +40,7 @@ public:
   void restart();
 
   bool in_equilibrium() const; ///< (17)
-  /// For find_step().   @return false, with the reason, if the system is singular
+  /// For find_step().   @return false, with the reason, if the system is singular   @throws StepGivenUp
   bool set_tangent(std::span<const Stiffness> tangents);
   /// Solves (16) for `step`, in which held unknowns go all that they have left.
   void find_step();
@@ -60,6 +60,7 @@ public:
   StaticsReport &report;
 
 private:
+  void ask_to_go_on() const;
   void follow_void_ratio(double ratio);
   void find_residual();
   void add_inertia();

@@ -201,11 +201,16 @@ def default_scenes() -> list[str]:
     return [_core.default_scene(), column.stdout]
 
 
+def stamps_in(folder: pathlib.Path) -> dict[str, dict[str, Any]]:
+    path = folder / "stamps.json"
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+
+
 def stamp(name: str, study: Any, minutes: float) -> None:
     """Notes by which program, from what scenes, and in how many CPU minutes a page was made, in studies/stamps.json and
     the table of studies/README.md: tests/studies/stamps_test.py finds it stale."""
     path, readme = (studies_folder() / file for file in ("stamps.json", "README.md"))
-    stamps = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    stamps = stamps_in(studies_folder())
     stamps[name] = {"revision": _core.__version__, "minutes": round(minutes), **fingerprint(name, study)}
     write_replacing(path, json.dumps(dict(sorted(stamps.items())), indent=1) + "\n")
     if readme.is_file():
@@ -236,6 +241,17 @@ def tables_folder(study: Any, options: argparse.Namespace, is_complete: bool) ->
 def title_of(module: pathlib.Path) -> str:
     """The first line of its docstring; it is not imported."""
     return (ast.get_docstring(ast.parse(module.read_text(encoding="utf-8"))) or "").partition("\n")[0]
+
+
+def listing() -> str:
+    """A row of each study: name, CPU minutes that it took when its page was made, title."""
+    folder = studies_folder()
+    stamps = stamps_in(folder)
+    rows = [f"  {'study':<20}{'CPU minutes':>11}  what"]
+    for path in sorted(folder.glob("*/__init__.py")):
+        name = path.parent.name
+        rows.append(f"  {name:<20}{stamps.get(name, {}).get('minutes', '-'):>11}  {title_of(path)}")
+    return "\n".join(rows) + "\nMinutes were measured, on one core, for the page; --dry-run estimates what remains."
 
 
 def load(name: str) -> Any:
@@ -273,10 +289,9 @@ def line_of(name: str, description: str) -> argparse.ArgumentParser:
 
 def main(words: list[str]) -> int:
     def with_study():
-        if not words or words[0] in ("-h", "--help"):
-            print("usage: isostat study NAME ...\n\n  " + "\n  ".join(
-                f"{path.parent.name:<20}{title_of(path)}" for path in sorted(studies_folder().glob("*/__init__.py"))))
-            if words:
+        if not words or words[0] in ("-h", "--help", "--list"):
+            print("usage: isostat study NAME ...\n\n" + listing())
+            if words and words[0] != "--list":
                 options = line_of("NAME", "").format_help().partition("\n\n")[2]
                 print(f"\n{options}\nSome studies have more: isostat study NAME --help")
             return

@@ -2,9 +2,10 @@
 // A box of soil between walls in a scene: what it becomes, and what is refused.
 #include "apps/deposit/box.hpp"
 
+#include "base/tell.hpp"
 #include "tests/apps/deposit/scene_texts.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace isostat
 {
@@ -28,11 +29,7 @@ TEST(BoxScene, KeysComeThroughTextAndGoToTheMesh)
   EXPECT_EQ(mesh.ground.at(7), 3.5);
   EXPECT_EQ(mesh.line[0], 5); // the middle
   EXPECT_EQ(mesh.ground_at({5, 0, 0}), 4.5);
-  EXPECT_EQ(scene.load.surcharge_at(3.9), 0);
   EXPECT_FALSE(scene.load.bears_on_all());
-  EXPECT_EQ(scene.load.surcharge_at(4), 1e4);
-  EXPECT_EQ(scene.load.surcharge_at(5), 2e4);
-  EXPECT_EQ(scene.load.surcharge_at(6.1), 0);
 }
 
 TEST(BoxScene, RefinementsComeThroughTextAndGoToTheMesh)
@@ -53,7 +50,18 @@ TEST(BoxScene, RefinementsComeThroughTextAndGoToTheMesh)
   expect_refused(box(refine), {"refine.0.to", "must be above"}, {"refine.0.to=[\"5 m\", \"1 m\"]"});
   expect_refused(box(refine), {"refine.0.from", "below the end of the soil"},
                  {"refine.0.from=[\"50 m\", \"1 m\"]", "refine.0.to=[\"60 m\", \"4 m\"]"});
-  expect_refused(box(refine), {"refine.0.levels", "in [1, 8]"}, {"refine.0.levels=9"});
+  expect_refused(box(refine), {"refine.0.levels", "in [1, 8] because a level makes 4"}, {"refine.0.levels=9"});
+  expect_refused(box(refine), {"analysis.petsc", "only the system of a consolidation has. Give -statics_pc_type gamg"},
+                 {"analysis.petsc=-statics_pc_type fieldsplit"});
+  expect_refused(box(refine), {"refine.0.to", "leaves elements at one side of two that are tied"},
+                 {"mesh.sides=tied", "refine.0.from=[\"0 m\", \"1 m\"]"});
+  const WarningsTaken said;
+  parse_column_scene(box(refine), "s", {"refine.0.to=[\"5 m\", \"50 m\"]"});
+  ASSERT_EQ(said.lines.size(), 1u);
+  EXPECT_THAT(said.lines[0], testing::HasSubstr("refine.0 goes beyond the soil; it covers 2 to 5 m, 1 to "));
+  parse_column_scene(box(refine), "s", {"refine.0.levels=8"});
+  ASSERT_EQ(said.lines.size(), 2u);
+  EXPECT_THAT(said.lines[1], testing::HasSubstr("refine.0 makes about "));
 }
 
 TEST(BoxScene, WithoutWallsAllIsAsItWas)
@@ -62,9 +70,6 @@ TEST(BoxScene, WithoutWallsAllIsAsItWas)
   EXPECT_EQ(scene.mesh.sides, Sides::tied);
   EXPECT_TRUE(mesh_spec(scene).ground.is_level());
   EXPECT_EQ(mesh_spec(scene).line[0], 0);
-  ColumnLoad load;
-  load.surcharge = 3;
-  EXPECT_EQ(load.surcharge_at(123), 3);
 }
 
 const std::string plate = "[water]\ndrainage = \"dry\"\n[analysis]\nkind = \"plate\"\ndisplacement = \"-0.2 m\"\n";

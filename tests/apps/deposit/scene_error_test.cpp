@@ -245,6 +245,7 @@ TEST(ColumnSceneError, OptionsOfLinearSolvers)
   expect_refused(consolidation, {"has the word -water_ksp_type", "begin with -statics_"}, options);
   expect_refused(consolidation, {"has the word ksp_type"}, {"analysis.petsc=ksp_type cg"});
   EXPECT_EQ(complaint(consolidation, {"analysis.petsc=-statics_mat_mumps_icntl_14 -1"}), "accepted");
+  EXPECT_EQ(complaint(consolidation, {"analysis.petsc=-statics_pc_type fieldsplit"}), "accepted");
 }
 
 TEST(ColumnSceneError, Output)

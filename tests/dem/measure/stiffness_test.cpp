@@ -295,44 +295,4 @@ TEST(Stiffness, RefusesWallsAndWhatIsNotANumber)
   EXPECT_THROW(condensed_stiffness(s), RunFailure);
   EXPECT_THROW(affine_stiffness(s), RunFailure);
 }
-
-TEST(ColumnStiffness, IsTheAcousticTensorOfTheAxis)
-{
-  const Mat6 c = condensed_stiffness(disordered(3, 1.2, 3));
-  constexpr int voigt[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
-  const int order[3][3] = {{0, 1, 2}, {1, 0, 2}, {2, 0, 1}}; // axis, then the lateral ones ascending
-  for (int a = 0; a < 3; ++a)
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        EXPECT_EQ(column_stiffness(c, a)(i, j), c(voigt[order[a][i]][a], voigt[order[a][j]][a]));
-}
-
-TEST(WaveSpeeds, IsotropicSolid)
-{
-  const double lambda = 30e6, mu = 12e6, density = 1900;
-  for (int axis = 0; axis < 3; ++axis)
-    {
-      const WaveSpeeds c = wave_speeds(cubic(lambda + 2 * mu, lambda, mu), density, axis);
-      EXPECT_NEAR_BECAUSE(c.p, std::sqrt((lambda + 2 * mu) / density), 1e-10,
-                          "round-off of an eigenvalue and its root, some 100 m/s");
-      EXPECT_NEAR_BECAUSE(c.s1, std::sqrt(mu / density), 1e-10,
-                          "round-off of an eigenvalue and its root, some 100 m/s");
-      EXPECT_NEAR_BECAUSE(c.s2, std::sqrt(mu / density), 1e-10,
-                          "round-off of an eigenvalue and its root, some 100 m/s");
-    }
-}
-
-TEST(WaveSpeeds, CoupledLengthwiseAndCrosswise)
-{
-  Mat6 c = cubic(50, 10, 20); // along z: zz and xz coupled, (50, 15; 15, 20) has 35 +- 15 sqrt(2); yz alone
-  c(2, 4) = c(4, 2) = 15;
-  const WaveSpeeds speeds = wave_speeds(c, 2.0, 2);
-  EXPECT_NEAR_BECAUSE(speeds.p, std::sqrt((35 + 15 * std::sqrt(2)) / 2), 1e-12,
-                      "round-off of an eigenvalue of order 10");
-  EXPECT_NEAR_BECAUSE(speeds.s1, std::sqrt(20 / 2.0), 1e-12, "round-off of an eigenvalue of order 10");
-  EXPECT_NEAR_BECAUSE(speeds.s2, std::sqrt((35 - 15 * std::sqrt(2)) / 2), 1e-12,
-                      "round-off of an eigenvalue of order 10");
-}
-
-TEST(WaveSpeeds, RoundingBelowZeroIsNoWave) { EXPECT_EQ(wave_speeds(cubic(1e6, 0, -1e-9), 1900, 0).s2, 0); }
 } // namespace isostat

@@ -241,6 +241,10 @@ TEST(SceneError, KeysThatExcludeEachOther)
   expect_complaint(smallest + "[[stage]]\nkind = \"friction\"\nfriction = \"18 deg\"",
                    {"stage.0.friction", "has no effect"});
   expect_complaint("[specimen]\nexpansion = 0.2", {"scene.toml:2", "specimen.expansion = 0.2", "in [0, 0.1]"});
+  for (const std::string key : {"expansion = 0.01", "density_tolerance = 0.05", "damping = 0.4"})
+    expect_complaint("[specimen]\nfile = \"a.h5\"\n" + key,
+                     {"scene.toml:3: specimen." + key, "has no effect with specimen.file (scene.toml:2)"});
+  EXPECT_EQ(complaint("[specimen]\nfile = \"a.h5\"\nexpansion = 0\ndamping = 0.3"), "accepted"); // printed defaults
   expect_complaint("[specimen]\nfile = \"\"", {"specimen.file", "must name a file"});
   for (const std::string file : {"packing.txt", "tests/n1000", "a.h5.csv", "a.csv#s0001"})
     expect_complaint("[specimen]\nfile = \"" + file + "\"",

@@ -310,6 +310,9 @@ TEST(Scene, RoundTripBitForBit)
         if (!scene.specimen.file.empty()) // whose grains are its own: a scrambled grading was not written
           {
             scene.specimen.file += ".h5";
+            scene.specimen.expansion = 0;
+            scene.specimen.density_tolerance = SpecimenSpec{}.density_tolerance;
+            scene.specimen.damping = SpecimenSpec{}.damping;
             scene.grading = {};
           }
         scene.drive = {}; // of a static one

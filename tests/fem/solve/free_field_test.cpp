@@ -203,7 +203,8 @@ TEST(FreeField, WavesThatLeaveAreAbsorbedAsByDashpots)
   const double k_z = std::numbers::pi / 20;
   for (const Pulse::Kind kind : {Pulse::p, Pulse::sh})
     EXPECT_BELOW_BECAUSE(left_of({kind, 0, k_z / 3}), 1e-5, "along x: elements and steps") << kind;
-  for (const auto &[kind, degrees] : {std::pair{Pulse::p, 45.}, {Pulse::p, 60.}, {Pulse::sv, 30.}, {Pulse::sh, 60.}})
+  for (const auto &[kind, degrees] :
+       {std::pair{Pulse::p, 45.}, {Pulse::p, 60.}, {Pulse::sv, 30.}, {Pulse::sv, 45.}, {Pulse::sh, 60.}})
     {
       const Pulse pulse{kind, k_z, k_z / std::tan(degrees * std::numbers::pi / 180)};
       EXPECT_NEAR_BECAUSE(left_of(pulse), reflected(pulse), 3e-4, "tails of the pulse, elements")
