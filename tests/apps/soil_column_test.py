@@ -152,9 +152,9 @@ class Mistakes(ColumnTest):
 
     def test_steps_without_end_are_announced(self):
         scene = self.write("thin.toml", SOIL)
-        command = self.command("soil_column", scene, "-o", "thin", *settings(analysis__time_step="1e-5 ms"))
+        command = self.command("soil_column", scene, "-o", "thin", *settings(analysis__time_step="1e-4 ms"))
         said = self.stop_when((self.folder / "thin/history.csv").exists, "files", signal.SIGTERM, command)[1]
-        self.assertRegex(said, r"warning: the run has \S+e\+\d+ time steps of 1e-08 s, .* of layer\.0, are \S+ m high")
+        self.assertRegex(said, r"warning: the run has \S+e\+\d+ time steps of 1e-07 s, .* of layer\.0, are \S+ m high")
 
     def test_time_step_above_the_stable_one(self):
         self.refuse(["time step", "must be <=", "Give a smaller one"], "--overwrite",

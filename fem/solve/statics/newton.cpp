@@ -17,34 +17,30 @@ void go(double part, const Vector &start, const Vector &step, Vector &x)
     x.local_element(i) = start.local_element(i) + part * step.local_element(i);
 }
 
-/// Backtracking (18) with the parabola through the merit's squares at both ends and the slope at the start, which for a
-/// Newton step is known (Nocedal & Wright, Numerical Optimization, 3.5 and 11.2).
+/// Newton's whole step if it makes the residual smaller. Otherwise the part (18) where the parabola through the squares
+/// of the residual before it, half way and at its end is least, even if the residual grows: where a material yields, or
+/// an apex returns, the way to equilibrium leads over larger ones. A way that diverges ends with the iterations.
 bool search_line(StaticsSubstep &substep, double tolerance)
 {
-  constexpr unsigned max_cuts = 6;
   constexpr double min_gain = 1e-4;
   const MixedVector start = substep.increment;
   const double before = substep.merit(1);
-  double part = 1;
-  for (unsigned cut = 0; cut <= max_cuts; ++cut)
+  const auto residual_at = [&](double part) {
+    go(part, start.u, substep.step.u, substep.increment.u);
+    go(part, start.p, substep.step.p, substep.increment.p);
+    return substep.evaluate() ? substep.merit(1 - part) : std::numeric_limits<double>::infinity();
+  };
+  double part = 1, after = residual_at(part);
+  if (!(after <= std::max((1 - min_gain) * before, tolerance * substep.report.scale)))
     {
-      go(part, start.u, substep.step.u, substep.increment.u);
-      go(part, start.p, substep.step.p, substep.increment.p);
-      const double after = substep.evaluate() ? substep.merit(1 - part) : std::numeric_limits<double>::infinity();
-      substep.report.residual = after / substep.report.scale;
-      if (after <= std::max((1 - min_gain * part) * before, tolerance * substep.report.scale))
-        {
-          substep.report.add_iteration(substep.report.residual);
-          substep.left *= 1 - part;
-          return true;
-        }
-      const double a = before * before, b = after * after;
-      const double best = std::isfinite(b) ? a * part * part / (b - a + 2 * a * part) : 0.5 * part;
-      part = std::clamp(best, 0.1 * part, 0.5 * part);
-      if (std::isfinite(after))
-        substep.report.fail("no part of Newton's step makes the residual smaller");
+      const double half = residual_at(0.5), a = before * before, b = half * half, c = after * after,
+                   curvature = a - 2 * b + c;
+      part = std::isfinite(c) && curvature > 0 ? std::clamp((3 * a - 4 * b + c) / (4 * curvature), 0.1, 1.0) : 0.5;
+      after = residual_at(part);
     }
-  return false;
+  substep.report.add_iteration(after / substep.report.scale);
+  substep.left *= 1 - part;
+  return std::isfinite(after);
 }
 } // namespace
 
