@@ -18,7 +18,7 @@ from studies.sand_calibration.predictions import (CONTACT, DRAWS, FIRST_SEED, LI
                                                   drained, small_strain, undrained, variants)
 from studies.scenes import scene_of
 
-DEFAULTS, QUICK, PAGE = {"seeds": 2, "trials": 23}, {"seeds": 1, "trials": 8}, "calibration"
+DEFAULTS, QUICK, PAGE = {"seeds": 2, "trials": 23}, {"seeds": 1, "trials": 12}, "calibration"
 GRAINS, DESIGN_SEEDS, PACE = 800, 1, 2e-3  # of trials; PACE: inertial number
 
 
