@@ -88,6 +88,7 @@ def posterior(places, curves, laboratory, concerned):
         block[concerned[name]] = scale * linear[name][1:]
     a = np.hstack(blocks).T
     best = lsq_linear(a, b, (0, 1)).x
+    # one expansion: the columns of the three are summed
     first = [next(j for j, one in enumerate(PARAMETERS) if j == k or one["key"] == key == "specimen.expansion")
              for k, key in enumerate(one["key"] for one in PARAMETERS)]
     tied = np.eye(len(first))[first]
