@@ -181,6 +181,7 @@ Cloud make_cloud(const GradingSpec &spec)
   Cloud cloud;
   cloud.box = {Vec3::Zero(), Vec3::Constant(size.edge)};
   cloud.upscaling = size.upscaling;
+  cloud.seed = spec.seed;
   std::vector<double> radii(diameters.size());
   for (std::size_t i = 0; i < radii.size(); ++i)
     radii[i] = 0.5 * cloud.upscaling * diameters[i];

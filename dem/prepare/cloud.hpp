@@ -9,9 +9,10 @@ namespace isostat
 /// A loose random packing without contacts, and the box around it: where every prepared specimen starts.
 struct Cloud
 {
-  Packing packing;      ///< at rest; stored along a Morton curve, `id` counts from the largest grain (0) down
-  RigidBox box;         ///< 0 ... edge of the cube on each axis
-  double upscaling = 1; ///< diameter in the cloud / diameter of the grading [-]
+  Packing packing;        ///< at rest; stored along a Morton curve, `id` counts from the largest grain (0) down
+  RigidBox box;           ///< 0 ... edge of the cube on each axis
+  double upscaling = 1;   ///< diameter in the cloud / diameter of the grading [-]
+  std::uint64_t seed = 0; ///< of its draws
 };
 
 /// Random cloud of spheres that follow the grading, in a cube.

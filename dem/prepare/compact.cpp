@@ -46,9 +46,18 @@ void stop_grains(Packing &grains)
     }
 }
 
-/// Opens all contacts by a homogeneous strain and shakes the grains: each component of a velocity is uniform within
-/// shaking sqrt(p/rho), so that their kinetic energy is 0.005 p of their volume (docs/theory.md, section 11).
-Snapshot opened(Snapshot packing, const SpecimenSpec &specimen)
+/// @param pressure  Pa   @param balance  unbalanced-force ratio at the end
+template <class Kind>
+Stage servo_stage(double pressure, double balance)
+{
+  Kind stage;
+  stage.pressure = pressure;
+  stage.balance = balance;
+  return stage;
+}
+} // namespace
+
+Snapshot opened(Snapshot packing, const SpecimenSpec &specimen, std::uint64_t seed)
 {
   const double stretch = 1 + specimen.expansion;
   packing.contacts.clear();
@@ -62,25 +71,20 @@ Snapshot opened(Snapshot packing, const SpecimenSpec &specimen)
     }
   Packing &grains = packing.grains;
   const double fastest = shaking * std::sqrt(specimen.pressure / grains.density);
+  Vec3 momentum = Vec3::Zero();
+  double mass = 0;
   for (std::size_t i = 0; i < grains.n_grains(); ++i)
     {
-      const auto u = uniform(0, RandomStream::shaking, grains.id[i]);
+      const auto u = uniform(seed, RandomStream::shaking, grains.id[i]);
       grains.set_centre(i, stretch * grains.centre(i));
       grains.set_linear_velocity(i, fastest * (2 * Vec3(u[0], u[1], u[2]) - Vec3::Ones()));
+      momentum += grains.mass(i) * grains.linear_velocity(i);
+      mass += grains.mass(i);
     }
+  for (std::size_t i = 0; i < grains.n_grains(); ++i)
+    grains.set_linear_velocity(i, grains.linear_velocity(i) - momentum / mass);
   return packing;
 }
-
-/// @param pressure  Pa   @param balance  unbalanced-force ratio at the end
-template <class Kind>
-Stage servo_stage(double pressure, double balance)
-{
-  Kind stage;
-  stage.pressure = pressure;
-  stage.balance = balance;
-  return stage;
-}
-} // namespace
 
 Snapshot compact(const Cloud &cloud, Law law, double friction, const Preparation &how)
 {
@@ -103,7 +107,7 @@ Snapshot compact(const Cloud &cloud, Law law, double friction, const Preparation
   if (specimen.expansion == 0)
     return start;
   start.law = of_test;
-  return run_stage(opened(start, specimen), stage, specimen.damping, how);
+  return run_stage(opened(start, specimen, cloud.seed), stage, specimen.damping, how);
 }
 
 Snapshot rebalance(const Snapshot &compacted, const Law &law, const Preparation &how)

@@ -14,6 +14,13 @@ struct Preparation
   int threads = 1; ///< that share a step, see StepSettings; changes no bit of the specimen
 };
 
+/// Opens all contacts by a homogeneous strain, specimen.expansion, and shakes the grains: each component of a velocity
+/// is uniform within 0.1 sqrt(p/rho), so that their kinetic energy is 0.005 p of their volume; then the mean velocity
+/// is taken out, so that they have no momentum (docs/theory.md, section 11).
+/// @param seed  of the specimen
+/// tested: tests/verification/programme_test.cpp
+Snapshot opened(Snapshot packing, const SpecimenSpec &specimen, std::uint64_t seed);
+
 /// Isotropic compression of a resting cloud to specimen.pressure with the given friction : walls close in under
 /// servo until all three stresses are within 1 % of it and the unbalanced-force ratio is below 2e-3.
 /// With specimen.expansion the packing is then opened by it, its grains are shaken, and it is compressed again with the

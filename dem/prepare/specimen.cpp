@@ -257,7 +257,8 @@ std::string specimen_recipe(const Scene &scene)
   recipe.contact = scene.contact;
   recipe.specimen = scene.specimen;
   recipe.specimen.cache = SpecimenSpec{}.cache;
-  const int version = scene.specimen.domain == "periodic-cell" ? cell_recipe_version : recipe_version;
+  const int version = (scene.specimen.domain == "periodic-cell" ? cell_recipe_version : recipe_version) +
+                      (scene.specimen.expansion > 0); // opened ones: shaken by the seed, without momentum
   const std::string text = to_toml(recipe);
   // the sections behind those of the specimen have their defaults: a key more there is no other specimen
   return fmt::format("# recipe {}\n{}", version, text.substr(0, text.find("[motion]")));

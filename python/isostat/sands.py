@@ -12,7 +12,8 @@ FOLDER = command.SCENES / "scenes/sands"
 def described(file: pathlib.Path) -> str:
     """Range, misfits and origin of a sand in a few lines.   Raises InputError"""
     own = file.suffix == ".toml"
-    sand = Scene({"sand": str(file.absolute() if own else file), "specimen": {"preparation_friction": "10 deg"}}).to_dict()["sand"]
+    scene = Scene({"sand": str(file.absolute() if own else file), "specimen": {"preparation_friction": "10 deg"}}).to_dict()
+    sand, limits = scene["sand"], (scene["specimen"].get(name, "unknown") for name in ("e_min", "e_max"))
 
     def span(low, high):
         if low in sand and high in sand:
@@ -23,6 +24,7 @@ def described(file: pathlib.Path) -> str:
             f"  misfit           fitted {sand.get('misfit', 'unknown')}, not fitted {sand.get('blind_misfit', 'unknown')}\n"
             f"  p0'              {span('lowest_pressure', 'highest_pressure')}\n"
             f"  void ratio       {span('lowest_void_ratio', 'highest_void_ratio')}\n"
+            f"  e_min, e_max     {', '.join(map(str, limits))}\n"
             f"  axial strain     to {sand.get('largest_strain', 'any')}\n"
             f"  tests            {sand.get('tests', 'unknown')}\n"
             f"  source           {sand.get('source', 'unknown')}\n"

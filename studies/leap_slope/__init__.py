@@ -10,7 +10,7 @@ from studies.columns import SCENES, Run
 from studies.leap_slope import cyclic, drained, results
 
 DEFAULTS, QUICK, PAGE = {"seeds": 5}, {"seeds": 1}, "leap"
-GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS = 2, 3, 1
+GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS = 2, 3, 2
 PACKINGS = 20  # of which each point of a slope draws one
 OPENED_SEEDS, EXPANSION = 3, 0.006  # of slopes run after the comparison; what undrained dense Karlsruhe sand asks for
 OPENED = {"specimen.expansion": EXPANSION, "specimen.preparation_friction": "3 deg"}
@@ -49,9 +49,10 @@ def boxes():
 
 def runs(options):
     grid_seeds, cyclic_seeds, check_seeds = (1, 1, 1) if options.quick else (GRID_SEEDS, CYCLIC_SEEDS, CHECK_SEEDS)
-    return [*drained.grid(grid_seeds), *slopes(options, "slope", options.seeds, {}),
-            *slopes(options, "opened", min(options.seeds, OPENED_SEEDS), {"analysis.safety": 0.4}), *boxes(),
-            *cyclic.runs(cyclic_seeds), *drained.checks(check_seeds)]
+    return [*drained.grid(grid_seeds), *cyclic.runs(cyclic_seeds, EXPANSION), *drained.moduli(check_seeds, EXPANSION),
+            *(run for x in (0, EXPANSION) for run in drained.checks(check_seeds, x)), *boxes(),
+            *slopes(options, "slope", options.seeds, {}),
+            *slopes(options, "opened", min(options.seeds, OPENED_SEEDS), {"analysis.safety": 0.4})]
 
 
 def report(store, planned, folder):

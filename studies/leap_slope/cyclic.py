@@ -19,26 +19,28 @@ class Cyclic:
 
     void_ratio: float
     seed: int
+    expansion: float = 0
     kind, specimen, program = "cyclic", None, "element_test"
 
     @property
     def name(self):
-        return f"cyclic_e{self.void_ratio:g}_s{self.seed}"
+        return f"cyclic_e{self.void_ratio:g}_{'opened_' if self.expansion else ''}s{self.seed}"
 
     def scene(self):
         stage = cyclic(f"{AMPLITUDE} kPa", cycles=MOST_CYCLES, strain=STRAIN,
                        reversals_after_liquefaction=2 * MOST_CYCLES)
         return scene_of(self.name, self.seed, GRAINS, {}, PRESSURE, PREPARED[self.void_ratio],
-                        [stage | {"liquefaction_ratio": ONSET}], {})
+                        [stage | {"liquefaction_ratio": ONSET}], {}, self.expansion)
 
     def estimated_seconds(self):
         return 15
 
 
-def runs(seeds):
-    """The test; after the predictions the same on packings of drained tests: the dependence on density."""
-    return [*(Cyclic(VOID_RATIO, seed) for seed in range(FIRST_SEED, FIRST_SEED + seeds)),
-            *(Cyclic(e0, FIRST_SEED) for e0 in (0.584, 0.724))]
+def runs(seeds, expansion):
+    """The test; after the predictions the same on packings of drained tests, the dependence on density, and on opened
+    ones."""
+    return [*(Cyclic(VOID_RATIO, seed, x) for x in (0, expansion) for seed in range(FIRST_SEED, FIRST_SEED + seeds)),
+            *(Cyclic(e0, FIRST_SEED) for e0 in (0.584, 0.724)), Cyclic(0.584, FIRST_SEED, expansion)]
 
 
 def cycles(folder):

@@ -12,6 +12,7 @@ import isostat
 import numpy as np
 
 from studies import APPS
+from studies.sand_calibration.predictions import modulus
 from studies.tables import read_csv
 
 LABORATORY, SAND = APPS / "laboratory/ottawa_f65", APPS / "scenes/sands/ottawa-f65.toml"
@@ -28,12 +29,12 @@ def sand():
     return tomllib.loads(SAND.read_text(encoding="utf-8"))
 
 
-def scene_of(name, seed, grains, contact, pressure, preparation, stages, motion):
+def scene_of(name, seed, grains, contact, pressure, preparation, stages, motion, expansion):
     return isostat.Scene({
         "title": name, "grading": sand()["grading"] | {"grains": grains, "seed": seed},
         "contact": sand()["contact"] | contact,
         "specimen": {"domain": "periodic-cell", "pressure": f"{pressure} kPa",
-                     "preparation_friction": f"{preparation} deg"},
+                     "preparation_friction": f"{preparation} deg", "expansion": expansion},
         "motion": motion, "output": {"snapshots": "none", "paraview": False}, "stage": stages})
 
 
@@ -48,23 +49,48 @@ class Drained:
     void_ratio: float | None = None  # of the laboratory's test
     pressure: float = PRESSURE
     direction: str = "compression"
+    expansion: float = 0
     kind, specimen, program = "drained", None, "element_test"
 
     @property
     def name(self):
         of = (f"e{self.void_ratio:g}" if self.void_ratio else
               f"{self.friction:g}deg_{self.limit:g}_{self.preparation:g}deg")
-        return f"{self.direction}_{of}_{self.pressure:g}kPa_s{self.seed}"
+        return f"{self.direction}_{of}_{self.pressure:g}kPa_{'opened_' if self.expansion else ''}s{self.seed}"
 
     def scene(self):
         contact = {} if self.friction is None else {
             "friction": f"{self.friction} deg", "rolling": sand()["contact"]["rolling"] | {"limit": self.limit}}
         stage = {"kind": "drained", "direction": self.direction, "strain": STRAIN}
         return scene_of(self.name, self.seed, GRAINS, contact, self.pressure, self.preparation, [stage],
-                        {"inertial_number": PACE})
+                        {"inertial_number": PACE}, self.expansion)
 
     def estimated_seconds(self):
         return 2.5
+
+
+class Modulus(Drained):
+    """G of the network of contacts."""
+
+    kind, function = "modulus", staticmethod(modulus)
+
+    @property
+    def name(self):
+        return f"G_{super().name}"
+
+    def arguments(self):
+        return {"scene": self.scene().text}
+
+
+def moduli(seeds, expansion):
+    """As dense as the sand for which E was chosen, at 100 kPa."""
+    return [Modulus(PREPARED[0.604], seed, void_ratio=0.604, pressure=100, expansion=x) for x in (0, expansion)
+            for seed in range(FIRST_SEED, FIRST_SEED + seeds)]
+
+
+def hardin_richart(e, pressure):
+    """G of round Ottawa sand, MPa (Hardin and Richart 1963).   pressure: kPa"""
+    return 6.908 * (2.17 - e)**2 / (1 + e) * pressure**0.5
 
 
 def grid(seeds):
@@ -80,10 +106,10 @@ def is_fitted(row):
     return row["mode"] == "TC" and row["sigma_3 (kPa)"] <= 300
 
 
-def checks(seeds):
+def checks(seeds, expansion=0):
     """All tests of the laboratory, of the fitted sand."""
     return [Drained(PREPARED[row["e0"]], seed, void_ratio=row["e0"], pressure=row["sigma_3 (kPa)"],
-                    direction="compression" if row["mode"] == "TC" else "extension")
+                    direction="compression" if row["mode"] == "TC" else "extension", expansion=expansion)
             for row in tests() for seed in range(FIRST_SEED, FIRST_SEED + seeds)]
 
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables and figures of the fit, the cyclic test and the slopes."""
+import itertools
+
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
@@ -43,24 +45,40 @@ def fit_rows(grid):
                    "e0": e0, "laboratory (deg)": laboratory, "fit (deg)": peak, "preparation (deg)": preparation}
 
 
+def made_of(run):
+    return PACKINGS["opened" if run.expansion else "slope"]
+
+
 def check_rows(checked):
-    for row in drained.tests():
+    for made, row in itertools.product(PACKINGS.values(), drained.tests()):
         mode = "compression" if row["mode"] == "TC" else "extension"
-        values = [value for run, value in checked if (run.void_ratio, run.pressure, run.direction) ==
-                  (row["e0"], row["sigma_3 (kPa)"], mode)]
+        values = [value for run, value in checked if (run.void_ratio, run.pressure, run.direction, made_of(run)) ==
+                  (row["e0"], row["sigma_3 (kPa)"], mode, made)]
         if not values:
             continue
         (peak, deviation, _, n), (strain, *_), (e, *_) = map(ensemble, zip(*values))
-        yield {"e0": row["e0"], "direction": mode, "sigma_3 (kPa)": row["sigma_3 (kPa)"],
-               "fitted": drained.is_fitted(row), "laboratory (deg)": row["peak friction (deg)"], "packings (deg)": peak,
+        yield {"packings": made, "e0": row["e0"], "direction": mode, "sigma_3 (kPa)": row["sigma_3 (kPa)"],
+               "fitted": drained.is_fitted(row) and made == "compacted",
+               "laboratory (deg)": row["peak friction (deg)"], "packings (deg)": peak,
                "s.d.": deviation, "n": n, "difference (deg)": peak - row["peak friction (deg)"],
                "strain at the peak, laboratory (%)": abs(row["strain at the peak (%)"]), "packings (%)": 100 * strain,
                "e of packings": e}
 
 
+def modulus_rows(store, planned):
+    """G next to the sand for which E was chosen, and at the void ratio of the packings."""
+    for made in PACKINGS.values():
+        found = [store.run(run).result for run, _ in done(store, planned, "modulus") if made_of(run) == made]
+        if found:
+            (g, deviation, _, n), (e, *_) = (ensemble([one[name] for one in found]) for name in ("G", "void_ratio"))
+            yield {"packings": made, "e of packings": e, "G (MPa)": g, "s.d.": deviation, "n": n,
+                   "sand of e 0.604 (MPa)": drained.hardin_richart(0.604, 100),
+                   "sand of that e (MPa)": drained.hardin_richart(e, 100)}
+
+
 def cyclic_rows(store, planned):
     for run, folder in done(store, planned, "cyclic"):
-        yield {"e0": run.void_ratio, "seed": run.seed, **cyclic.cycles(folder)}
+        yield {"packings": made_of(run), "e0": run.void_ratio, "seed": run.seed, **cyclic.cycles(folder)}
 
 
 def slope_of(folder):
@@ -98,17 +116,21 @@ def box_rows(store, planned):
 
 
 def draw_drained(rows, path):
-    """Peak friction and the strain there, of packings over those of the laboratory."""
+    """Peak friction and the strain there, of packings over those of the laboratory. Hollow: opened packings."""
     figure, (axes,) = panels(1, 2)
-    kinds = (("o", BLUE, "fitted: compression, 100 to 300 kPa", lambda row: row["fitted"]),
-             ("s", ORANGE, "500 to 700 kPa", lambda row: not row["fitted"] and row["direction"] == "compression"),
-             ("^", GREEN, "extension", lambda row: row["direction"] == "extension"))
-    for marker, colour, label, belongs in kinds:
-        part = [row for row in rows if belongs(row)]
+    compression, extension = "compression", "extension"
+    kinds = (("o", BLUE, "compression, 100 to 300 kPa, of the fit",
+              lambda row: row["direction"] == compression and row["sigma_3 (kPa)"] <= 300),
+             ("s", ORANGE, "500 to 700 kPa",
+              lambda row: row["direction"] == compression and row["sigma_3 (kPa)"] > 300),
+             ("^", GREEN, extension, lambda row: row["direction"] == extension))
+    for (marker, colour, label, belongs), made in itertools.product(kinds, PACKINGS.values()):
+        part = [row for row in rows if row["packings"] == made and belongs(row)]
         for axis, laboratory, packings in ((axes[0], "laboratory (deg)", "packings (deg)"),
                                            (axes[1], "strain at the peak, laboratory (%)", "packings (%)")):
             axis.plot([row[laboratory] for row in part], [row[packings] for row in part], marker, color=colour,
-                      markersize=4, label=label)
+                      markersize=4, label=label if made == "compacted" else None,
+                      markerfacecolor=None if made == "compacted" else "none")
     for axis, name in zip(axes, ("peak friction (deg)", "axial strain at the peak (%)")):
         ends = [min(axis.get_xlim()[0], axis.get_ylim()[0]), max(axis.get_xlim()[1], axis.get_ylim()[1])]
         axis.plot(ends, ends, color=GREY, linewidth=0.8, zorder=0)
@@ -146,7 +168,8 @@ def draw_slopes(members, box, path):
 def report(store, planned, folder):
     grid, checked = strengths(store, planned)
     tables = {"fit": list(fit_rows(grid)), "drained": list(check_rows(checked)),
-              "cyclic": list(cyclic_rows(store, planned)), "slopes": list(slope_rows(store, planned)),
+              "moduli": list(modulus_rows(store, planned)), "cyclic": list(cyclic_rows(store, planned)),
+              "slopes": list(slope_rows(store, planned)),
               "box": list(box_rows(store, planned))}
     for name, rows in tables.items():
         if rows:

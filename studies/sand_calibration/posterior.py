@@ -25,21 +25,16 @@ from studies.tables import read_csv
 
 PARAMETERS = [{"key": "contact.friction", "bounds": ["18 deg", "28 deg"], "start": "23 deg"},
               {"key": "contact.rolling.limit", "bounds": [0.05, 0.2], "start": 0.1, "scale": "log"},
-              {"key": "specimen.expansion", "bounds": [0.01, 0.05], "start": 0.03, "scale": "log"},
+              *({"key": "specimen.expansion", "bounds": [0.004, 0.04], "start": 0.013, "scale": "log", "curve": group}
+                for group in ("loose", "medium", "dense")),
               *({"key": "specimen.preparation_friction", "bounds": [f"{low} deg", f"{high} deg"],
                  "start": f"{start} deg", "curve": group} for group, low, start, high in
-                (("loose", 18, 26, 34), ("medium", 9, 14, 20), ("dense", 2, 4, 8)))]
+                (("loose", 18, 26, 34), ("medium", 9, 14, 20), ("dense", 1, 4, 8)))]
 SAMPLES = 200_000
 
 
 def number(value):
     return float(str(value).split()[0])
-
-
-def starting(parameters, values):
-    """Parameters of a plan that begins there."""
-    return [one | {"start": f"{value:.5g}{str(one['start']).lstrip('0123456789.')}" if isinstance(one["start"], str)
-                   else value} for one, value in zip(parameters, values)]
 
 
 def shares(values):
@@ -61,6 +56,7 @@ class Posterior:
     misfit: float  # of the best set, by the linear curves
     missed: float  # V
     expected: float  # s
+    tied: float  # misfit of the best set with one expansion for all densities
     samples: np.ndarray  # one set each row
 
     def band(self):
@@ -92,12 +88,18 @@ def posterior(places, curves, laboratory, concerned):
         block[concerned[name]] = scale * linear[name][1:]
     a = np.hstack(blocks).T
     best = lsq_linear(a, b, (0, 1)).x
+    # one expansion: the columns of the three are summed
+    first = [next(j for j, one in enumerate(PARAMETERS) if j == k or one["key"] == key == "specimen.expansion")
+             for k, key in enumerate(one["key"] for one in PARAMETERS)]
+    tied = np.eye(len(first))[first]
+    shared = a @ tied[:, sorted(set(first))]
     least, missed = np.sum((a @ best - b)**2), np.mean(missed)
     expected = least + missed * design.shape[1] / n
     covariance = expected / (2 * len(laboratory)) * np.linalg.inv(a.T @ a)
     free = np.random.default_rng(1).multivariate_normal(np.linalg.lstsq(a, b, rcond=None)[0], covariance, SAMPLES)
     inside = free[((free > 0) & (free < 1)).all(axis=1)]
-    return Posterior(values_at(best), *map(float, np.sqrt([least, missed, expected])), values_at(inside))
+    of_tied = 2 * lsq_linear(shared, b, (0, 1)).cost
+    return Posterior(values_at(best), *map(float, np.sqrt([least, missed, expected, of_tied])), values_at(inside))
 
 
 @functools.cache

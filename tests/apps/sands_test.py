@@ -71,7 +71,8 @@ class Sands(AppTest):
     def test_list(self):
         listed = self.run_app("isostat", "sands")
         self.assert_done(listed)
-        for word in ("karlsruhe-fine-sand\n", "misfit           fitted 0.146, not fitted 0.196", "100 kPa to 200 kPa"):
+        for word in ("karlsruhe-fine-sand\n", "misfit           fitted 0.196, not fitted 0.29", "100 kPa to 200 kPa",
+                     "0.4915, 0.7389", "missed: extension by 6 to 15 deg, undrained cyclic (over 100 cycles for 18)"):
             self.assertIn(word, listed.stdout)
         own = self.run_app("isostat", "sands", self.write("mine.toml", SAND))
         self.assertIn("p0'              up to 40 kPa", own.stdout)

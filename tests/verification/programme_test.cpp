@@ -161,6 +161,23 @@ TEST(Compaction, OpenedPackingsAreAsDenseWithFewerContacts)
   EXPECT_NEAR_BECAUSE(ratio(opened), ratio(closed), 0.02, "the friction of the test stops it half of the 0.05 short");
   EXPECT_BELOW_BECAUSE(static_cast<double>(opened.contacts.size()) / static_cast<double>(closed.contacts.size()), 0.85,
                        "4.5 or less contacts of a grain in place of nearly 6");
+  Cloud reseeded = cloud;
+  reseeded.seed = cloud.seed + 1;
+  EXPECT_NE(opened.grains.position, compact(reseeded, test::paper_law(), 0.05, {spec, nobody}).grains.position);
+  const Snapshot one = isostat::opened(closed, spec, 1), other = isostat::opened(closed, spec, 2);
+  Vec3 momentum = Vec3::Zero();
+  double speed = 0, energy = 0, solid = 0; // largest sum of momenta if none cancelled, m/s kg; J; m3
+  for (std::size_t i = 0; i < one.grains.n_grains(); ++i)
+    {
+      const Vec3 v = one.grains.linear_velocity(i);
+      EXPECT_NE(v, other.grains.linear_velocity(i));
+      momentum += one.grains.mass(i) * v;
+      speed += one.grains.mass(i) * v.norm();
+      energy += 0.5 * one.grains.mass(i) * v.squaredNorm();
+      solid += one.grains.mass(i) / one.grains.density;
+    }
+  EXPECT_BELOW_BECAUSE(momentum.norm(), 1e-13 * speed, "round-off of 400 additions");
+  EXPECT_NEAR_BECAUSE(energy / (0.005 * spec.pressure * solid), 1, 0.1, "mean square of 1,200 numbers of unlike mass");
   const double aim = ratio(opened) + 0.05, tolerance = 0.005;
   EXPECT_NEAR_BECAUSE(ratio(find_preparation_friction(cloud, test::paper_law(), aim, tolerance, {spec, nobody}).state),
                       aim, tolerance, "the search sees the density after the second compression");
