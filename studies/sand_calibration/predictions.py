@@ -24,8 +24,11 @@ CONTACT = {"law": "hertz-mindlin", "young": "65 GPa", "friction": "25 deg", "rol
 COMPACTED = CONTACT | {"young": "38 GPa"}, [25, 0.1, 0, 0, 0, 26, 17, 6.9]  # not opened; fit of revision 8b91876a
 EXPANSION, PREPARATION = "specimen.expansion", "specimen.preparation_friction"
 OPENINGS = {f"expansion {x:g}": {EXPANSION: x} for x in (0, 0.002, 0.005, 0.01, 0.02)}
-# of dense packings {contact: {label: what is changed}}
-VARIANTS = {"compacted": {"asperities": {"contact.exponent": 2},
+# of dense packings {contact: {label: what is changed, None: left out}}
+VARIANTS = {"compacted": {"linear": {"contact.law": "linear-rolling", "contact.young": "1.45 GPa"},
+                          "asperities": {"contact.exponent": 2}, "no twisting": {"contact.twisting": None},
+                          "no rolling and twisting": {"contact.rolling": None, "contact.twisting": None},
+                          "walls": {"specimen.domain": "rigid-box"},
                           **{f"4 deg, {of}": {PREPARATION: "4 deg", **changed} for of, changed in OPENINGS.items()}},
             "opened": OPENINGS | {"static": {"motion.drive": "static"}}}
 SLOWER = "4 times slower", {"motion.inertial_number": 5e-4}
@@ -143,7 +146,8 @@ class Test:
                          contact=contact, motion=self.motion)
         for key, value in self.changes.items():
             section, name = key.split(".")
-            scene[section] = ({} if section == "motion" else scene[section]) | {name: value}
+            of_section = ({} if section == "motion" else scene[section]) | {name: value}
+            scene[section] = {key: value for key, value in of_section.items() if value is not None}
         return isostat.Scene(scene)
 
     @property
