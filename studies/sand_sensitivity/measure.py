@@ -56,11 +56,12 @@ def cyclic(h):
 TESTS = {"drained": drained, "undrained-monotonic": undrained, "undrained-cyclic": cyclic}
 
 
-def observe(results, seed, contact, preparation):
+def observe(results, seed, contact, preparation, expansion):
     """All observables of one packing.   preparation: friction while it is compressed, as in a scene"""
     def scene(pressure, stages=(), **motion):
         return isostat.Scene(scene_of("sensitivity", GRAINS, seed, {
-            "domain": "periodic-cell", "pressure": f"{pressure} kPa", "preparation_friction": preparation}, stages,
+            "domain": "periodic-cell", "pressure": f"{pressure} kPa", "preparation_friction": preparation,
+            "expansion": expansion}, stages,
             contact=contact, motion=motion))
 
     found, moduli = {}, []
