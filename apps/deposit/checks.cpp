@@ -283,10 +283,11 @@ void check_petsc(const SceneDocument &document, const ColumnScene &scene)
     prefixes.push_back("-statics_");
   if (shaken && !implicit && scene.water.drainage == Drainage::coupled)
     prefixes.push_back("-water_");
-  if (scene.analysis.kind != AnalysisKind::consolidation &&
-      scene.analysis.petsc.find("-statics_pc_type fieldsplit") != std::string::npos)
-    document.refuse("analysis.petsc", "splits displacements from pore pressures, which only the system of a "
-                                      "consolidation has. Give -statics_pc_type gamg or hypre.");
+  const bool has_pressures =
+      scene.analysis.kind == AnalysisKind::consolidation || (implicit && scene.water.drainage == Drainage::coupled);
+  if (!has_pressures && scene.analysis.petsc.find("-statics_pc_type fieldsplit") != std::string::npos)
+    document.refuse("analysis.petsc", "splits displacements from pore pressures, which only consolidation and implicit "
+                                      "steps of coupled soil solve for. Give -statics_pc_type gamg or hypre.");
   std::istringstream words(scene.analysis.petsc);
   bool follows = false; // a value, which may be a negative number
   for (std::string word; words >> word; follows = true)

@@ -170,7 +170,8 @@ private:
   {
     constexpr double many = 4e4; // 2 GB, two minutes
     const double n = space_.displacement_vector().size() + space_.pressure_vector().size();
-    const bool has_statics = std::is_same_v<Solver, Statics> || scene_.mesh.sides != Sides::tied;
+    const bool has_statics = std::is_same_v<Solver, Statics> || scene_.mesh.sides != Sides::tied ||
+                             scene_.analysis.scheme == TimeScheme::implicit;
     if (!ranks().first() || (space_.dimension < 3 && scene_.refine.empty()))
       return;
     Progress(request_.quiet).say(fmt::format("{} unknowns", n));

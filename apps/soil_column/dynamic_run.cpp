@@ -58,8 +58,8 @@ private:
     const auto height = [](const ColumnLayer &layer) { return layer.thickness / layer.n_cells(); };
     const auto lowest = std::ranges::min_element(scene_.layers, {}, height);
     return fmt::format("the run has {:.3g} time steps of {:.3g} s, the stable one being {:.3g} s; the lowest elements, "
-                       "of layer.{}, are {:.3g} m high. Give them more height, the run a shorter duration, or expect "
-                       "hours; lines of progress say how many.",
+                       "of layer.{}, are {:.3g} m high. Give them more height, the run a shorter duration or "
+                       "analysis.scheme = \"implicit\", or expect hours; lines of progress say how many.",
                        n_total(), run_.time_step(), run_.stable_step(), lowest - scene_.layers.begin(),
                        height(*lowest));
   }

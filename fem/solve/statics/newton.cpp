@@ -19,7 +19,7 @@ void go(double part, const Vector &start, const Vector &step, Vector &x)
 
 /// Newton's whole step if it makes the residual smaller. Otherwise the part (18) where the parabola through the squares
 /// of the residual before it, half way and at its end is least, even if the residual grows: where a material yields, or
-/// an apex returns, the way to equilibrium leads over larger ones. A way that diverges ends with the iterations.
+/// an apex returns, the way to equilibrium leads over larger ones.
 bool search_line(StaticsSubstep &substep, double tolerance)
 {
   constexpr double min_gain = 1e-4;
@@ -62,6 +62,8 @@ bool solve_by_newton(StaticsSubstep &substep, const Material &material, const Ne
       substep.find_step();
       if (!search_line(substep, settings.tolerance))
         return false;
+      if (substep.report.residual > 4 * substep.report.effort.residuals.back().front())
+        return substep.report.fail("Newton's method diverges");
     }
   return true;
 }
