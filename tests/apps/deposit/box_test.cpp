@@ -51,7 +51,8 @@ TEST(BoxScene, RefinementsComeThroughTextAndGoToTheMesh)
   expect_refused(box(refine), {"refine.0.from", "below the end of the soil"},
                  {"refine.0.from=[\"50 m\", \"1 m\"]", "refine.0.to=[\"60 m\", \"4 m\"]"});
   expect_refused(box(refine), {"refine.0.levels", "in [1, 8] because a level makes 4"}, {"refine.0.levels=9"});
-  expect_refused(box(refine), {"analysis.petsc", "implicit steps of coupled soil solve for. Give -statics_pc_type gamg"},
+  expect_refused(box(refine),
+                 {"analysis.petsc", "implicit steps of coupled soil solve for. Give -statics_pc_type gamg"},
                  {"analysis.petsc=-statics_pc_type fieldsplit"});
   expect_refused(box(refine), {"refine.0.to", "leaves elements at one side of two that are tied"},
                  {"mesh.sides=tied", "refine.0.from=[\"0 m\", \"1 m\"]"});
