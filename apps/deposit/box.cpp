@@ -242,6 +242,37 @@ void note_box(const SceneDocument &document, const ColumnScene &scene, std::size
     warn(fmt::format("{} makes about {:.1g} elements. Give fewer levels, or a smaller box.", box, elements));
 }
 
+/// Refuses a box between the centres of all elements, where these are as the scene says.
+void check_centres(const SceneDocument &document, const ColumnScene &scene, std::size_t k)
+{
+  const auto &[from, to, levels] = scene.refine[k];
+  for (unsigned d = 0; d < scene.mesh.dimension; ++d)
+    {
+      const bool is_up = d + 1 == scene.mesh.dimension;
+      bool covers = is_up && !scene.mesh.ground_x.empty();
+      const auto look = [&](double begin, double length, unsigned cells) {
+        for (unsigned i = 0; i < cells && !covers; ++i)
+          if (const double centre = begin + (i + 0.5) * length / cells;
+              (from.empty() || from[d] < centre) && (to.empty() || centre < to[d]))
+            covers = true;
+        covers = covers || cells == 0; // chosen later
+        return begin + length;
+      };
+      double z = 0;
+      if (!is_up)
+        look(0, scene.mesh.width, scene.mesh.cells_across);
+      else
+        for (std::size_t layer = scene.layers.size(); layer-- > 0;)
+          z = look(z, scene.layers[layer].thickness, scene.layers[layer].n_cells());
+      if (!covers)
+        document.refuse(
+            fmt::format("refine.{}.{}", k, to.empty() ? "from" : "to"),
+            fmt::format("leaves no centre of an element in the box along {}. Give a larger box.", is_up ? "the height"
+                                                                                                  : d == 0 ? "x"
+                                                                                                           : "y"));
+    }
+}
+
 void check_refinement(const SceneDocument &document, const ColumnScene &scene)
 {
   const unsigned dimension = scene.mesh.dimension;
@@ -270,7 +301,10 @@ void check_refinement(const SceneDocument &document, const ColumnScene &scene)
                                         d + 1 < dimension ? "across" : "high"));
         }
       if (!scene.mesh.given)
-        note_box(document, scene, k);
+        {
+          check_centres(document, scene, k);
+          note_box(document, scene, k);
+        }
     }
   check_tied_boxes(document, scene);
 }

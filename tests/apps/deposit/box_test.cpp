@@ -54,6 +54,8 @@ TEST(BoxScene, RefinementsComeThroughTextAndGoToTheMesh)
   expect_refused(box(refine),
                  {"analysis.petsc", "implicit steps of coupled soil solve for. Give -statics_pc_type gamg"},
                  {"analysis.petsc=-statics_pc_type fieldsplit"});
+  expect_refused(box(refine), {"refine.0.to", "leaves no centre of an element in the box along x"},
+                 {"refine.0.to=[\"2.9 m\", \"4 m\"]"}); // the first one is at 3 m
   expect_refused(box(refine), {"refine.0.to", "leaves elements at one side of two that are tied"},
                  {"mesh.sides=tied", "refine.0.from=[\"0 m\", \"1 m\"]"});
   const WarningsTaken said;
