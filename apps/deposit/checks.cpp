@@ -250,6 +250,12 @@ void check_scheme(const SceneDocument &document, const ColumnScene &scene)
     document.refuse(key, "must be explicit if mesh.sides is \"free-field\". Give sides = \"tied\" or \"walls\".");
   if (scene.has_grains())
     document.refuse(key, "must be explicit in soil of grains, whose own steps are what a run costs. Remove it.");
+  for (std::size_t k = 0; k < scene.layers.size(); ++k)
+    if (const ColumnLayer &layer = scene.layers[k]; scene.water.drainage == Drainage::coupled &&
+                                                    layer.material == LayerMaterial::iwan && layer.iwan.contraction > 0)
+      document.refuse(key, fmt::format("must be explicit in sand that liquefies, layer.{}: displacements depend on the "
+                                       "step there. Remove it, or give the layer contraction = 0.",
+                                       k));
 }
 
 void check_analysis(const SceneDocument &document, const ColumnScene &scene)

@@ -45,6 +45,12 @@ public:
   {
     if (n_total() > many_steps)
       warnings_.push_back(too_many_steps());
+    if (const double periods = run_.time_step() * scene_.analysis.highest_frequency; is_implicit() && periods > 0.1)
+      warnings_.push_back(
+          fmt::format("implicit steps of {:.3g} s: there are {:.2g} in a period of analysis.highest_frequency, {:.3g} "
+                      "Hz, and 10 to 20 "
+                      "are needed to follow it. Give a smaller time_step, or a lower frequency of interest.",
+                      run_.time_step(), 1 / periods, scene_.analysis.highest_frequency));
     if (resumed_)
       motion_.restore(*resumed_);
   }

@@ -262,7 +262,10 @@ Summary report_of(const ColumnSummary &s, const ColumnScene &scene)
     add_box_motion(*s.box_motion, mesh_spec(scene), summary);
   if ((s.box_motion || scene.slope.tangent > 0) && p.gamma > 0.1 && !scene.analysis.large_strain)
     summary.row("large strains", "beyond 10 %, but taken as small: displacements have an error of their order{}",
-                scene.mesh.sides == Sides::free_field ? "" : ". Give analysis.large_strain = true");
+                scene.mesh.sides == Sides::free_field || scene.analysis.kind != AnalysisKind::dynamic ||
+                        scene.analysis.scheme == TimeScheme::implicit
+                    ? ""
+                    : ". Give analysis.large_strain = true");
   if (s.grains)
     add_grains(*s.grains, summary);
   summary["depths"] = s.point_depths;

@@ -169,12 +169,11 @@ void LinearSolver::refuse_no_solution(const std::string &method, const std::stri
                                  parts_->prefix, relative));
 }
 
-/// Once, when all has been read: what PETSc reports of an iteration it is asked after the first one.
+/// When all has been read: what PETSc reports of an iteration it is asked after the first one.
 void LinearSolver::refuse_unused()
 {
   const Parts &p = *parts_;
-  if (std::exchange(parts_->is_checked, true))
-    return;
+  parts_->is_checked = true;
   PetscInt n = 0;
   char **names = nullptr, **values = nullptr;
   petsc_check(PetscOptionsLeftGet(parts_->options, &n, &names, &values));
@@ -218,8 +217,17 @@ void LinearSolver::set_matrix(Mat matrix)
       throw RunFailure(fmt::format("the matrix of {} is singular, or has no preconditioner (PETSc: {}, {})", p.prefix,
                                    PCFailedReasons[reason], static_cast<int>(error)));
     }
-  if (p.factor)
-    refuse_unused();
+  if (p.is_checked)
+    return;
+  if (!p.factor) // blocks and levels read theirs when they are used
+    {
+      Vec in = nullptr, out = nullptr;
+      petsc_check(MatCreateVecs(matrix, &out, &in));
+      const PetscVector zero(in), none(out);
+      petsc_check(VecSet(in, 0));
+      petsc_check(KSPSolve(p.ksp, in, out));
+    }
+  refuse_unused();
 }
 
 void LinearSolver::solve(Vec in, Vec out)
@@ -229,7 +237,6 @@ void LinearSolver::solve(Vec in, Vec out)
     return petsc_check(MatSolve(p.factor, in, out));
   const OwnOptions own(p.options);
   petsc_check(KSPSolve(p.ksp, in, out));
-  refuse_unused();
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   PetscInt iterations = 0;
   PetscReal residual = 0;

@@ -52,9 +52,26 @@ Statics::Statics(const FiniteElementSpace &space, Material &material, StaticsSet
   if (problem_->settings.inertia)
     begin_motion();
   problem_->begin_system(state_.pressure_scale);
+  if (!problem_->settings.petsc.empty())
+    try_options();
 }
 
 Statics::~Statics() = default;
+
+/// Options of PETSc that are wrong are refused before a run begins: the first factor, without flow.
+void Statics::try_options()
+{
+  const Loading end{state_.load, state_.now.u};
+  const StaticsSubstep substep(*problem_, state_, end, 1, false, report_);
+  std::vector<Stiffness> tangents(problem_->material.n_points());
+  problem_->material.stiffness(tangents);
+  try
+    {
+      problem_->system->set_tangent(tangents, 0);
+    }
+  catch (const RunFailure &)
+    {} // the first step says why
+}
 
 /// M a = f, from rest.
 void Statics::begin_motion()

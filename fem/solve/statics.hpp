@@ -42,7 +42,7 @@ class Statics
 public:
   /// @pre material.n_points() == space.n_points(), initial stress set
   /// @throws InputError  other numbers of points, pore water with degree 1, a displacement of a component that is
-  ///         neither fixed nor together, settings out of range
+  ///         neither fixed nor together, settings out of range, options of PETSc that are wrong or without effect
   Statics(const FiniteElementSpace &space, Material &material, StaticsSettings settings);
   ~Statics();
 
@@ -82,6 +82,7 @@ public:
 
 private:
   void begin_motion();
+  void try_options();
   double next_part(double left) const;
   void advance(double duration, bool flow);
   [[noreturn]] void fail(double size) const;

@@ -35,8 +35,9 @@ bool search_line(StaticsSubstep &substep, double tolerance)
     {
       const double half = residual_at(0.5), a = before * before, b = half * half, c = after * after,
                    curvature = a - 2 * b + c;
-      part = std::isfinite(c) && curvature > 0 ? std::clamp((3 * a - 4 * b + c) / (4 * curvature), 0.1, 1.0) : 0.5;
-      after = residual_at(part);
+      const bool has_minimum = std::isfinite(c) && curvature > 0;
+      part = has_minimum ? std::clamp((3 * a - 4 * b + c) / (4 * curvature), 0.1, 1.0) : 0.5;
+      after = has_minimum ? residual_at(part) : half;
     }
   substep.report.add_iteration(after / substep.report.scale);
   substep.left *= 1 - part;

@@ -235,6 +235,9 @@ TEST(ColumnSceneError, ImplicitSteps)
   expect_refused(scene, {"analysis.viscosity", "has no effect on implicit"}, {"analysis.viscosity=0.1 ms"});
   expect_refused(scene, {"analysis.scheme", "drainage is \"undrained\""}, {"water.drainage=undrained"});
   expect_refused(scene, {"analysis.scheme", "large_strain"}, {"analysis.large_strain=true"});
+  expect_refused(scene, {"analysis.scheme", "sand that liquefies, layer.0"},
+                 {"water.drainage=coupled", "layer.0.permeability=1e-4 m/s", "layer.0.material=iwan",
+                  "layer.0.reference_pressure=100 kPa"});
   expect_refused(scene, {"analysis.petsc", "begin with -statics_"}, {"analysis.petsc=-water_ksp_type gmres"});
 }
 
