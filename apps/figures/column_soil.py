@@ -212,7 +212,8 @@ def ru_map(column):
         outline(axes, *borders, cells > LIQUEFIED_RU, colors=RED, linewidths=0.9)
         axes.annotate(f"line: $r_u$ = {LIQUEFIED_RU}", (0.99, 1.01), xycoords="axes fraction", ha="right", va="bottom",
                       fontsize=9, color=RED)
-    figure.colorbar(shade, ax=axes, aspect=25, pad=0.015).set_label("Pore pressure ratio $r_u$")
+    bar = figure.colorbar(shade, ax=axes, aspect=25, pad=0.015, extend="min" if np.nanmin(ru) < -0.01 else "neither")
+    bar.set_label("Pore pressure ratio $r_u$")
     letters([top, axes])
     return figure
 

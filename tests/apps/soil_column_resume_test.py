@@ -47,8 +47,8 @@ class Resume(ColumnTest):
             water__air="boyle", layer__1__saturation=0.99, layer__0__permeability="1e-8 m/s", motion__1__axis="z")))
 
     def test_implicit_steps(self):
-        self.finish(self.interrupt(signal.SIGTERM, 130, *settings(analysis__scheme="implicit", analysis__time_step="5 ms",
-                                                                  layer__0__contraction=0)))
+        self.finish(self.interrupt(signal.SIGTERM, 130, *settings(
+            analysis__scheme="implicit", analysis__time_step="5 ms", layer__0__contraction=0)))
 
     def test_sigkill_and_a_damaged_checkpoint(self):
         arguments = self.interrupt(signal.SIGKILL, -signal.SIGKILL)
